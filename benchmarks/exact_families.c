@@ -3,7 +3,7 @@
 #include "benchmarks/lib/options.h"
 #include "models/shapes/body.h"
 #include "runtime/ccd/ccd.h"
-#include "runtime/detector/candidates.h"
+#include "runtime/detector/detector.h"
 #include "src/core/timer.h"
 #include "src/mesh/predicates.h"
 
@@ -283,7 +283,9 @@ static cscd_status count_scene(cscd_context *context, const family_scene *s, exa
         cscd_counters counters = cscd_detector_counters(detector);
         sum->tests += counters.tests;
         sum->exact += counters.by_exact;
-        status = candidates_collect(detector, s->ends[0], s->ends[1], 0.0, 0.0, &found);
+        const candidate_quest quest = {&detector->space, &detector->rebuild, config_growth(&detector->config),
+                                       0.0, 0.0};
+        status = candidates_collect(&quest, s->ends[0], s->ends[1], &found);
     }
     for (int kind = 0; status == CSCD_OK && kind < 2; kind++) {
         for (size_t i = 0; i < found.lists[kind].count; i++)

@@ -51,7 +51,7 @@ typedef struct moment {
 typedef struct answer_times {
     double ms[QUESTION_COUNT];
     cscd_intersections found; /* of all */
-    size_t buried;                 /* vertices */
+    size_t buried;            /* vertices */
     size_t grown;
     double tracker_ms;
 } answer_times;

@@ -113,7 +113,7 @@ static bool open_recording(interval_recording *r, io_error *error) {
                                    .skip_adjacent = true,
                                    .representatives = &r->detector->space.representatives,
                                    .filter = {.mesh = r->mesh},
-                                   .limit = r->detector->limit};
+                                   .limit = r->detector->config.limit};
     contact_lane_reset(r->lane);
     return record_pairs(r) || io_fail(error, "out of memory");
 }

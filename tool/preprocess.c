@@ -164,7 +164,8 @@ static void write_origin(json *out, const plan_report *r) {
     json_number(out, "total_ms", t.total_ms);
     json_end_object(out);
     json_begin_object(out, "provenance");
-    provenance_write(out, r->argument_count, r->arguments, cscd_context_describe(r->recording->context).thread_count);
+    provenance_write(out, r->argument_count, r->arguments,
+                     cscd_context_describe(r->recording->context).thread_count);
     json_begin_array(out, "inputs");
     provenance_write_input(out, r->model_path, recorded_object_hash_model(&r->recording->objects[0]));
     json_end_array(out);

@@ -47,8 +47,8 @@ static bool make_tree(volume_trial *t) {
     const cscd_detector *d = t->detector;
     const cscd_mesh *mesh = d->mesh;
     bool culls = detector_region_count(d) > 0;
-    const uint32_t *regions = culls ? d->culling.triangle_regions : mesh->triangle_components;
-    uint32_t count = culls ? d->culling.region_count : mesh->component_count;
+    const uint32_t *regions = culls ? d->interval.culling.triangle_regions : mesh->triangle_components;
+    uint32_t count = culls ? d->interval.culling.region_count : mesh->component_count;
     t->keeps_adjacent = calloc(count > 0 ? count : 1, sizeof *t->keeps_adjacent);
     bool good =
         t->keeps_adjacent != NULL &&
@@ -144,21 +144,22 @@ static void follow_step(volume_trial *t, const double *x0, const double *x1) {
     const cscd_detector *d = t->detector;
     const cscd_mesh *mesh = d->mesh;
     bool any = false;
-    for (uint32_t c = 0; c < mesh->component_count; c++) any |= d->culled[c];
+    for (uint32_t c = 0; c < mesh->component_count; c++) any |= d->interval.culled[c];
     t->interval = (swept_interval){.mesh = mesh,
                                    .x0 = x0,
                                    .x1 = x1,
                                    .bvh = &d->space.bvh,
                                    .skip_adjacent = true,
                                    .representatives = &d->space.representatives,
-                                   .culling = any ? &d->culling : NULL,
-                                   .culled = d->culled,
+                                   .culling = any ? &d->interval.culling : NULL,
+                                   .culled = d->interval.culled,
                                    .filter = {.mesh = mesh},
-                                   .limit = d->limit};
+                                   .limit = d->config.limit};
     for (uint32_t i = 0; any && i < mesh->triangle_count; i++)
-        t->keeps_adjacent[d->culling.triangle_regions[i]] = d->culled[mesh->triangle_components[i]];
+        t->keeps_adjacent[d->interval.culling.triangle_regions[i]] =
+            d->interval.culled[mesh->triangle_components[i]];
     t->search.keeps_adjacent = any ? t->keeps_adjacent : NULL;
-    volume_tree_orient(&t->tree, any ? d->culling.orientations : NULL);
+    volume_tree_orient(&t->tree, any ? d->interval.culling.orientations : NULL);
 }
 
 static void run_round(volume_trial *t, int round) {

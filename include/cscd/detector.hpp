@@ -191,9 +191,8 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     find_intersections(const positions &x,
                        const cscd_intersection_options &options = cscd_intersection_defaults()) {
         const cscd_view *at = covering(x);
-        return find<intersections>([&](intersections *out) {
-            return cscd_detector_find_intersections(get(), at, &options, out);
-        });
+        return find<intersections>(
+            [&](intersections *out) { return cscd_detector_find_intersections(get(), at, &options, out); });
     }
     /* Contacts of a list, summed up by pair of parts. */
     contact_part_pairs contact_parts(span<const cscd_contact> items) {

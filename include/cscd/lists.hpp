@@ -62,8 +62,7 @@ inline span<const cscd_patch> patches(const cscd_intersections &found) noexcept 
     if (found.patches == nullptr) return {};
     return {found.patches->items, found.patches->count};
 }
-inline span<const cscd_winding> windings(const cscd_intersections &found,
-                                         const cscd_patch &patch) noexcept {
+inline span<const cscd_winding> windings(const cscd_intersections &found, const cscd_patch &patch) noexcept {
     return {found.patches->windings + patch.first_winding, patch.winding_count};
 }
 inline span<const cscd_overlap> overlaps(const cscd_intersections &found) noexcept {

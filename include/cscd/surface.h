@@ -471,13 +471,13 @@ typedef struct cscd_intersection {
 
 /* The pairs of the kinds that count, sorted by (a, b). The list lives until the detector's next call. */
 typedef struct cscd_intersections {
-    const cscd_intersection *items;                    /* NULL, unless the answer is LIST */
+    const cscd_intersection *items;                         /* NULL, unless the answer is LIST */
     size_t count;                                           /* for ANY 1 or 0: yes or no */
     size_t crossing, coplanar, folded, duplicate, touching; /* the number of each kind; for ANY all 0 */
-    uint32_t zero_area_triangles; /* triangles with all corners on one line */
-    uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
-    uint32_t collapsed;           /* the number of collapsed components: see cscd_detector_collapsed */
-    bool stopped;                 /* the search has ended early, so there may be more pairs */
+    uint32_t zero_area_triangles;                           /* triangles with all corners on one line */
+    uint32_t first_zero_area; /* the first of them; UINT32_MAX if there is none */
+    uint32_t collapsed;       /* the number of collapsed components: see cscd_detector_collapsed */
+    bool stopped;             /* the search has ended early, so there may be more pairs */
     uint8_t reserved[3];
 
     /* What the options ask for, else NULL; lives as long as the list. */

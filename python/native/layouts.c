@@ -90,8 +90,8 @@ FIELDS(preprocess_timings, FIELD(cscd_preprocess_timings, assembly_ms),
        FIELD(cscd_preprocess_timings, solve_ms), FIELD(cscd_preprocess_timings, regions_ms),
        FIELD(cscd_preprocess_timings, total_ms))
 FIELDS(plan_info, FIELD(cscd_plan_info, method), FIELD(cscd_plan_info, region_count),
-       FIELD(cscd_plan_info, compared_count), FIELD(cscd_plan_info, charge_kernels), FIELD(cscd_plan_info, better_kernels),
-       FIELD(cscd_plan_info, origin))
+       FIELD(cscd_plan_info, compared_count), FIELD(cscd_plan_info, charge_kernels),
+       FIELD(cscd_plan_info, better_kernels), FIELD(cscd_plan_info, origin))
 FIELDS(compared_plan, FIELD(cscd_compared_plan, method), FIELD(cscd_compared_plan, k),
        FIELD(cscd_compared_plan, region_count), FIELD(cscd_compared_plan, kept),
        FIELD(cscd_compared_plan, tested_share), FIELD(cscd_compared_plan, failure))
@@ -136,20 +136,20 @@ FIELDS(intersection_options, FIELD(cscd_intersection_options, struct_size),
        FIELD(cscd_intersection_options, cut_offs), FIELD(cscd_intersection_options, part_bodies),
        FIELD(cscd_intersection_options, orientation), FIELD(cscd_intersection_options, depth_limit),
        FIELD(cscd_intersection_options, max_memory), FIELD(cscd_intersection_options, max_work))
-FIELDS(intersection, FIELD(cscd_intersection, a), FIELD(cscd_intersection, b),
-       FIELD(cscd_intersection, kind), FIELD(cscd_intersection, shared),
-       FIELD(cscd_intersection, components), FIELD(cscd_intersection, objects))
+FIELDS(intersection, FIELD(cscd_intersection, a), FIELD(cscd_intersection, b), FIELD(cscd_intersection, kind),
+       FIELD(cscd_intersection, shared), FIELD(cscd_intersection, components),
+       FIELD(cscd_intersection, objects))
 FIELDS(intersections, FIELD(cscd_intersections, items), FIELD(cscd_intersections, count),
        FIELD(cscd_intersections, crossing), FIELD(cscd_intersections, coplanar),
        FIELD(cscd_intersections, folded), FIELD(cscd_intersections, duplicate),
-       FIELD(cscd_intersections, touching),
-       FIELD(cscd_intersections, zero_area_triangles), FIELD(cscd_intersections, first_zero_area),
-       FIELD(cscd_intersections, collapsed), FIELD(cscd_intersections, stopped),
-       FIELD(cscd_intersections, curves), FIELD(cscd_intersections, patches),
-       FIELD(cscd_intersections, overlaps), FIELD(cscd_intersections, depths),
-       FIELD(cscd_intersections, cut_offs), FIELD(cscd_intersections, parts),
-       FIELD(cscd_intersections, collapsed_components), FIELD(cscd_intersections, left_out),
-       FIELD(cscd_intersections, wanted_memory), FIELD(cscd_intersections, wanted_work))
+       FIELD(cscd_intersections, touching), FIELD(cscd_intersections, zero_area_triangles),
+       FIELD(cscd_intersections, first_zero_area), FIELD(cscd_intersections, collapsed),
+       FIELD(cscd_intersections, stopped), FIELD(cscd_intersections, curves),
+       FIELD(cscd_intersections, patches), FIELD(cscd_intersections, overlaps),
+       FIELD(cscd_intersections, depths), FIELD(cscd_intersections, cut_offs),
+       FIELD(cscd_intersections, parts), FIELD(cscd_intersections, collapsed_components),
+       FIELD(cscd_intersections, left_out), FIELD(cscd_intersections, wanted_memory),
+       FIELD(cscd_intersections, wanted_work))
 FIELDS(curve, FIELD(cscd_curve, first_point), FIELD(cscd_curve, point_count), FIELD(cscd_curve, first_piece),
        FIELD(cscd_curve, piece_count), FIELD(cscd_curve, start), FIELD(cscd_curve, end),
        FIELD(cscd_curve, components), FIELD(cscd_curve, objects), FIELD(cscd_curve, closed),

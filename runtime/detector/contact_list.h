@@ -1,9 +1,32 @@
-/* Gathers the contacts of all lanes into one sorted list. */
+/* Lists that calls return: their memory, and the contacts of all lanes gathered into one sorted list. */
 #pragma once
 
-#include "runtime/detector/result_buffer.h"
-#include "runtime/detector/search_space.h"
-#include "runtime/narrow_phase/narrow_phase.h"
+#include "runtime/detector/search.h"
+
+/* Memory for a list that a call returns, and for sorting it. */
+typedef struct result_buffer {
+    void *items;
+    void *keys, *spare_keys; /* keys are sorted in place of items, by way of the spare ones */
+    size_t capacity;
+} result_buffer;
+
+/* Makes room for count items of item_size bytes and as many keys of key_size bytes, always the same sizes for one
+ * buffer. What the buffer held is lost. */
+cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count,
+                                  size_t item_size, size_t key_size);
+
+/* The same for a long list in two steps, so that whoever fills it may give back other memory in between: items that hold
+ * anything, and then the keys, just enough of them. */
+cscd_status result_buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
+                                        size_t item_size);
+cscd_status result_buffer_reserve_keys(cscd_context *context, result_buffer *buffer, size_t count,
+                                       size_t key_size);
+
+/* Gives back what only sorting needs; the items stay. */
+void result_buffer_free_keys(cscd_context *context, result_buffer *buffer);
+void result_buffer_free(cscd_context *context, result_buffer *buffer);
+
+/* ---- contacts ------------------------------------------------------------------------------------------ */
 
 /* A contact in a lane, and a number to sort it by. */
 typedef struct contact_key {
@@ -18,7 +41,6 @@ cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t ite
                                 size_t *count);
 
 /* Lists the contacts that the caller does not ignore, sorted by (toi, kind, a, b). LIST_TOO_LONG: *out has their number
- * alone. Adds the numbers that the lanes
- * have counted, and the length of the list, to the counters. */
+ * alone. Adds the numbers that the lanes have counted, and the length of the list, to the counters. */
 cscd_status contact_list_collect(search_space *s, const exclusions *e, result_buffer *buffer,
                                  cscd_counters *counters, cscd_contacts *out);

@@ -1,14 +1,14 @@
 /* Intersections by kind, of the public API: all, the first ones, their number, or whether there is one. */
-#include "cscd/surface.h"
-
-#include "runtime/detector/check.h"
-#include "runtime/detector/list_cap.h"
+#include "runtime/detector/detector.h"
 #include "runtime/detector/surface_answers.h"
 #include "runtime/intersections/intersections.h"
 #include "src/core/least_sizes.h"
 #include "src/core/sort.h"
+#include "src/core/timer.h"
+#include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- the API's names and defaults ---------------------------------------------------------------------- */
@@ -62,23 +62,23 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
 enum { PAIR_SIZE = 64 };
 
 static size_t most_memory(const cscd_detector *d, const cscd_intersection_options *options) {
-    return options->max_memory > 0 ? options->max_memory : d->memory_most;
+    return options->max_memory > 0 ? options->max_memory : d->config.memory_most;
 }
 
 /* Before the first call that asks. */
 static void look_at_memory(cscd_detector *d) {
-    d->memory_most = memory_share();
+    d->config.memory_most = memory_share();
 }
 
 static size_t longest_list(const cscd_detector *d, const cscd_intersection_options *options) {
-    size_t fit = most_memory(d, options) / PAIR_SIZE, longest = d->options.longest_list;
+    size_t fit = most_memory(d, options) / PAIR_SIZE, longest = d->config.options.longest_list;
     return longest > 0 && longest < fit ? longest : fit;
 }
 
 static cscd_status fail_too_long(const cscd_detector *d, const cscd_intersection_options *options,
                                  size_t count) {
-    size_t longest = d->options.longest_list, most = most_memory(d, options);
-    if (longest > 0 && count > longest) return list_cap_fail(d, count);
+    size_t longest = d->config.options.longest_list, most = most_memory(d, options);
+    if (longest > 0 && count > longest) return list_cap_fail(d->context, &d->interval.cap, count);
     return context_fail(
         d->context, CSCD_LIST_TOO_LONG,
         "the list would have %zu pairs of triangles, of %d bytes each, more than max_memory, which is "
@@ -124,7 +124,7 @@ static void settle_lane(kind_search *s, intersection_lane *lane) {
         pair_note note = lane->notes[i];
         found_pair pair = lane->items[i];
         if (!is_wanted(s, note)) continue;
-        if (is_left_out(s, &s->detector->exclusions, pair, note)) {
+        if (is_left_out(s, &s->detector->config.exclusions, pair, note)) {
             if (s->left_out != NULL) left_out_pairs_add(s->left_out, pair.a, pair.b);
             continue;
         }
@@ -141,7 +141,7 @@ static bool list_too_long(const kind_search *s) {
 /* Called between two rounds, on the calling thread. Once the list is too long, no pair is kept. */
 static void settle_lanes(void *data) {
     kind_search *s = data;
-    static_check *check = &s->detector->check;
+    static_check *check = &s->detector->known.check;
     for (uint32_t i = 0; i < check->lane_count; i++) settle_lane(s, &check->lanes[i]);
     if (!list_too_long(s)) return;
     for (uint32_t i = 0; i < check->lane_count; i++) check->lanes[i].settled = check->lanes[i].count = 0;
@@ -149,10 +149,10 @@ static void settle_lanes(void *data) {
 
 static cscd_status find_all(kind_search *s) {
     cscd_detector *d = s->detector;
-    list_cap_begin_pairs(d, s->keeps ? s->longest : 0, settle_lanes, s);
-    cscd_status status =
-        static_check_kinds(&d->check, &d->space.traversal, &d->space.bvh, s->positions, d->exclusions.names);
-    list_cap_end_check(d);
+    list_cap_begin_pairs(&d->interval.cap, &d->known.check, s->keeps ? s->longest : 0, settle_lanes, s);
+    cscd_status status = static_check_kinds(&d->known.check, &d->space.traversal, &d->space.bvh, s->positions,
+                                            d->config.exclusions.names);
+    list_cap_end_pairs(&d->known.check);
     if (status == CSCD_OK) settle_lanes(s);
     return status;
 }
@@ -166,7 +166,7 @@ static bool pair_counts(void *data, found_pair pair, pair_note note) {
 
 static bool host_keeps(void *data, found_pair pair) {
     const kind_search *s = data;
-    return !exclusions_host_ignores(&s->detector->exclusions, pair.a, pair.b);
+    return !exclusions_host_ignores(&s->detector->config.exclusions, pair.a, pair.b);
 }
 
 static cscd_status find_first(kind_search *s) {
@@ -178,13 +178,13 @@ static cscd_status find_first(kind_search *s) {
                               .any = any,
                               .data = s,
                               .counts = pair_counts,
-                              .stays = d->exclusions.ignore != NULL ? host_keeps : NULL};
-    s->without_host = d->exclusions;
+                              .stays = d->config.exclusions.ignore != NULL ? host_keeps : NULL};
+    s->without_host = d->config.exclusions;
     s->without_host.ignore = NULL;
-    cscd_status status = first_pairs_find(&d->check, &d->space.traversal, &d->space.bvh, s->positions,
-                                          d->exclusions.names, &quest);
-    for (uint32_t i = 0; status == CSCD_OK && i < d->check.lane_count; i++) {
-        const intersection_lane *lane = &d->check.lanes[i];
+    cscd_status status = first_pairs_find(&d->known.check, &d->space.traversal, &d->space.bvh, s->positions,
+                                          d->config.exclusions.names, &quest);
+    for (uint32_t i = 0; status == CSCD_OK && i < d->known.check.lane_count; i++) {
+        const intersection_lane *lane = &d->known.check.lanes[i];
         for (size_t j = 0; j < lane->count; j++) s->of_kind[lane->notes[j].kind]++;
     }
     return status;
@@ -192,7 +192,7 @@ static cscd_status find_first(kind_search *s) {
 
 /* Where more pairs are asked for than a list may have, the search cannot stop before that is known. */
 static bool stops_early(const cscd_detector *d, const cscd_intersection_options *options) {
-    size_t longest = options->answer == CSCD_ANSWER_LIST ? d->options.longest_list : 0;
+    size_t longest = options->answer == CSCD_ANSWER_LIST ? d->config.options.longest_list : 0;
     if (options->answer == CSCD_ANSWER_ANY) return true;
     return options->stop_after > 0 && (longest == 0 || options->stop_after <= longest);
 }
@@ -207,9 +207,9 @@ typedef struct pair_key {
 
 static cscd_intersection describe_pair(const cscd_mesh *mesh, const pair_key *key) {
     cscd_intersection pair = {.a = (uint32_t)(key->pair >> 32),
-                                   .b = (uint32_t)key->pair,
-                                   .kind = (cscd_intersection_kind)key->kind,
-                                   .shared = key->shared};
+                              .b = (uint32_t)key->pair,
+                              .kind = (cscd_intersection_kind)key->kind,
+                              .shared = key->shared};
     pair.components[0] = mesh->triangle_components[pair.a];
     pair.components[1] = mesh->triangle_components[pair.b];
     mesh_objects_of_pair(mesh, CSCD_CONTACT_TT, pair.a, pair.b, pair.objects);
@@ -220,12 +220,12 @@ _Static_assert(2 * sizeof(pair_key) <= sizeof(cscd_intersection), "pairs are sor
 
 /* Room for the list, with little to spare, since lists are long where memory matters. */
 static cscd_status reserve_pairs(cscd_detector *d, size_t count) {
-    if (count <= d->pairs.capacity && d->pairs.items != NULL) return CSCD_OK;
+    if (count <= d->results.intersections.capacity && d->results.intersections.items != NULL) return CSCD_OK;
     const size_t room = count + count / 8 + 16;
-    result_buffer_free(d->context, &d->pairs);
-    d->pairs.items = context_reserve(d->context, room, sizeof(cscd_intersection));
-    if (d->pairs.items == NULL) return CSCD_OUT_OF_MEMORY;
-    d->pairs.capacity = room;
+    result_buffer_free(d->context, &d->results.intersections);
+    d->results.intersections.items = context_reserve(d->context, room, sizeof(cscd_intersection));
+    if (d->results.intersections.items == NULL) return CSCD_OUT_OF_MEMORY;
+    d->results.intersections.capacity = room;
     return CSCD_OK;
 }
 
@@ -234,17 +234,17 @@ static cscd_status reserve_pairs(cscd_detector *d, size_t count) {
 static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersections *out) {
     cscd_status status = reserve_pairs(d, count);
     if (status != CSCD_OK) return status;
-    pair_key *keys = d->pairs.items;
+    pair_key *keys = d->results.intersections.items;
     size_t next = 0;
-    for (uint32_t i = 0; i < d->check.lane_count; i++) {
-        const intersection_lane *lane = &d->check.lanes[i];
+    for (uint32_t i = 0; i < d->known.check.lane_count; i++) {
+        const intersection_lane *lane = &d->known.check.lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             found_pair p = lane->items[j];
             keys[next++] = (pair_key){(uint64_t)p.a << 32 | p.b, lane->notes[j].kind, lane->notes[j].shared};
         }
     }
     sort_by_number(keys, keys + count, count, sizeof *keys);
-    cscd_intersection *items = d->pairs.items;
+    cscd_intersection *items = d->results.intersections.items;
     for (size_t i = count; i-- > 0;) {
         const pair_key key = keys[i];
         items[i] = describe_pair(d->mesh, &key);
@@ -264,7 +264,7 @@ static void count_zero_area(const static_check *check, cscd_intersections *out) 
 
 /* Nothing is found beside pairs that are not listed. */
 static void leave_out_list(const kind_search *s, cscd_intersections *out) {
-    const size_t longest = s->detector->options.longest_list;
+    const size_t longest = s->detector->config.options.longest_list;
     const bool by_memory = longest == 0 || out->count <= longest;
     if (!by_memory) return;
     surface_answers_leave_out_list(&s->options, out);
@@ -275,9 +275,9 @@ static cscd_status give_result(const kind_search *s, cscd_intersections *out) {
     cscd_detector *d = s->detector;
     const size_t *of_kind = s->of_kind;
     cscd_intersections result = {.count = count_found(s),
-                                      .collapsed = d->collapsed.count,
-                                      .collapsed_components = collapsed_list(&d->collapsed)};
-    count_zero_area(&d->check, &result);
+                                 .collapsed = d->known.collapsed.count,
+                                 .collapsed_components = collapsed_list(&d->known.collapsed)};
+    count_zero_area(&d->known.check, &result);
     if (s->options.answer == CSCD_ANSWER_ANY) {
         result.stopped = result.count > 0;
     } else {
@@ -300,16 +300,18 @@ static cscd_status give_result(const kind_search *s, cscd_intersections *out) {
 
 typedef struct kind_question {
     cscd_intersection_options options;
+    bool
+        early; /* the search may end early; else every triangle that intersects is marked, so states are known */
     cscd_intersections *out;
 } kind_question;
 
 static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_intersections *found) {
-    const same_solids *same = found->depths != NULL ? &d->answers->same_solids : NULL;
-    cscd_status status =
-        part_sums_run(&d->part_sums, d->mesh, &d->parts, found, same, budget, &d->part_pairs);
-    if (status == CSCD_OK) found->parts = &d->part_pairs;
+    const same_solids *same = found->depths != NULL ? &d->results.answers->same_solids : NULL;
+    cscd_status status = part_sums_run(&d->results.part_sums, d->mesh, &d->config.parts, found, same, budget,
+                                       &d->results.part_pairs);
+    if (status == CSCD_OK) found->parts = &d->results.part_pairs;
     if (status != CSCD_OUT_OF_MEMORY || !budget->exceeded) return status;
-    part_sums_free(d->context, &d->part_sums);
+    part_sums_free(d->context, &d->results.part_sums);
     surface_answers_leave_out(budget, CSCD_LEFT_OUT_PARTS, found);
     return CSCD_OK;
 }
@@ -320,14 +322,14 @@ static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_in
  * back first. */
 static memory_budget begin_memory(cscd_detector *d, const cscd_intersection_options *options) {
     size_t most = most_memory(d, options), kept = most / 8;
-    if (d->part_sums.key_capacity > kept / sizeof(part_key)) part_sums_free(d->context, &d->part_sums);
-    surface_answers_shrink(d, kept);
+    if (d->results.part_sums.key_capacity > kept / sizeof(part_key))
+        part_sums_free(d->context, &d->results.part_sums);
+    surface_answers_shrink(d->context, &d->results.answers, kept);
     return (memory_budget){.most = most - most / 4,
                            .most_work = options->max_work > 0 ? options->max_work : MAX_WORK_DEFAULT};
 }
 
-static cscd_status find_kinds(cscd_detector *d, const double *positions, void *data) {
-    const kind_question *q = data;
+static cscd_status find_kinds(cscd_detector *d, const double *positions, const kind_question *q) {
     memory_budget budget = begin_memory(d, &q->options);
     kind_search s = {.detector = d,
                      .positions = positions,
@@ -335,19 +337,77 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, void *d
                      .longest = longest_list(d, &q->options),
                      .keeps = q->options.answer == CSCD_ANSWER_LIST};
     bool more = surface_answers_wanted(&q->options);
-    left_out_pairs *left_out = more ? surface_answers_begin(d) : NULL;
+    left_out_pairs *left_out = more ? surface_answers_begin(&d->space, &d->results.answers) : NULL;
     if (more && left_out == NULL) return CSCD_OUT_OF_MEMORY;
     if (q->options.overlaps) s.left_out = left_out;
-    bool early = stops_early(d, &q->options);
-    cscd_status status = early ? find_first(&s) : find_all(&s);
-    if (status == CSCD_OK && early && list_too_long(&s)) { /* than fits the memory: all are counted */
+    cscd_status status = q->early ? find_first(&s) : find_all(&s);
+    if (status == CSCD_OK && q->early && list_too_long(&s)) { /* than fits the memory: all are counted */
         memset(s.of_kind, 0, sizeof s.of_kind);
         status = find_all(&s);
     }
     if (status == CSCD_OK) status = give_result(&s, q->out);
-    if (status == CSCD_OK && more) status = surface_answers_find(d, positions, &q->options, &budget, q->out);
+    const surface_scene scene = {&d->config, &d->space, positions, d->known.check.collapsed};
+    if (status == CSCD_OK && more)
+        status = surface_answers_find(d->results.answers, &scene, &q->options, &budget, q->out);
     if (status == CSCD_OK && q->options.parts) status = sum_up_parts(d, &budget, q->out);
     return status;
+}
+
+static cscd_status answer_question(cscd_detector *d, const double *positions, kind_question *question) {
+    cscd_status status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(0.0),
+                                             config_growth(&d->config));
+    detector_find_collapsed(d, positions, positions);
+    if (status == CSCD_OK) status = detector_leave_collapsed(d, COLLAPSED_LEFT);
+    d->known.check.collapsed = collapsed_marks(&d->known.collapsed);
+    if (status == CSCD_OK) status = find_kinds(d, positions, question);
+    d->known.check.collapsed = NULL;
+    detector_leave_collapsed(d, COLLAPSED_FOUND);
+    return status == CSCD_OK ? context_progress_status(d->context) : status;
+}
+
+/* Sets the marks of components whose triangles are not looked at with each other to false. */
+static void unmark_masked(const cscd_detector *d, bool *triangles) {
+    for (uint32_t t = 0; d->config.pair_rules.sets != NULL && t < d->mesh->triangle_count; t++)
+        triangles[t] = triangles[t] && !config_masks(&d->config, d->mesh, d->mesh->triangle_components[t]);
+}
+
+/* Inactive triangles have been compared with active ones only, so nothing is known of those that do not cross them. */
+static void unmark_inactive(const cscd_detector *d, bool *triangles) {
+    const bool *active = d->space.active.triangles;
+    for (uint32_t t = 0; active != NULL && t < d->mesh->triangle_count; t++)
+        triangles[t] = active[t] || d->known.check.crossing[t];
+}
+
+/* States and positions belong together, so both are written when all is found. If the call is cancelled even now, or the
+ * host's loop leaves out a task, the states may be those of other positions, and nothing is known. */
+static cscd_status keep_states(cscd_detector *d, const double *positions) {
+    if (!start_states_hold(&d->known.starts, positions)) start_states_begin(&d->known.starts, positions);
+    unmark_inactive(d, d->known.check.unproven);
+    unmark_masked(d, d->known.check.unproven);
+    start_states_checked(&d->known.starts, d->known.check.unproven, d->known.check.crossing);
+    cscd_status status = context_progress_status(d->context);
+    if (status != CSCD_OK) start_states_forget(&d->known.starts);
+    return status;
+}
+
+/* Asks at positions in one call that can be cancelled or fail; the caller has read them. */
+static cscd_status ask_moment(cscd_detector *d, const double *positions, kind_question *question) {
+    double since = timer_now_ms(), spent = 0.0;
+    cscd_status status = positions_check(d->context, positions, d->mesh->vertex_count, "positions");
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->config.exclusions.seams, positions);
+    if (status != CSCD_OK) return status;
+
+    detector_begin_call(d);
+    progress_stage(&d->context->progress, "static check", 0.0, 1.0);
+    const waiting_place waiting = detector_waiting_place(d);
+    status = waiting_settle(&waiting, positions);
+    if (status == CSCD_OK) status = answer_question(d, positions, question);
+    if (status != CSCD_OK) return detector_fail_call(d, status);
+    if (!question->early) status = keep_states(d, positions);
+    if (status != CSCD_OK) return status;
+    timer_lap(&since, &spent);
+    d->results.timings.check_ms = spent;
+    return CSCD_OK;
 }
 
 static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
@@ -360,9 +420,9 @@ static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
     kind_question question = {.out = &found};
     cscd_status status = take_options(context, options, &question.options);
     if (status == CSCD_OK) status = views_read(context, d->mesh, positions, "positions", &d->unpacked[0], &x);
-    if (d->memory_most == 0) look_at_memory(d);
-    const moment_question asked = {find_kinds, &question, !stops_early(d, &question.options)};
-    if (status == CSCD_OK) status = detector_ask_moment(d, x, &asked);
+    if (d->config.memory_most == 0) look_at_memory(d);
+    question.early = stops_early(d, &question.options);
+    if (status == CSCD_OK) status = ask_moment(d, x, &question);
     if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }

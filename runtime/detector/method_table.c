@@ -1,8 +1,6 @@
 /* Says how each method goes through the pipeline. Baselines are in runtime/baselines: without that folder and the
  * lines between the marks here, the detector has all other methods. */
-#include "runtime/detector/method_table.h"
-
-#include "src/core/names.h"
+#include "runtime/detector/config.h"
 
 /* baselines: begin */
 #include "runtime/baselines/baselines.h"

@@ -1,21 +1,47 @@
-/* What a step knows of its end, which is the start of the next one. */
-#include "runtime/detector/adaptive.h"
-#include "runtime/detector/step.h"
+/* Snapshot of what a call that is cancelled or fails must restore. */
+#include "runtime/detector/start_knowledge.h"
 
-void step_take(cscd_detector *d, const double *end) {
-    if (!detector_culls(d)) {
-        start_states_forget(&d->starts); /* contacts have tainted nothing */
-        return;
-    }
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
-        const cscd_guarantee *g = &d->guarantees[c];
-        d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
-    }
-    if (!d->verlet.serving) adaptive_learn(d);
-    start_states_end(&d->starts, end, d->incomplete);
-    verlet_list_take(d);
+#include <string.h>
+
+cscd_status rollback_create(const cscd_mesh *mesh, rollback *out) {
+    cscd_context *context = mesh->context;
+    if (!progress_wanted(&context->progress)) return CSCD_OK;
+    return rollback_reserve(mesh, out);
 }
 
-void step_withdraw(cscd_detector *d) {
-    if (detector_culls(d)) start_states_restore(&d->starts);
+cscd_status rollback_reserve(const cscd_mesh *mesh, rollback *r) {
+    cscd_context *context = mesh->context;
+    if (r->triangles != NULL) return CSCD_OK;
+    uint8_t *triangles = context_allocate(context, mesh->triangle_count, sizeof *triangles);
+    component_start *components = context_allocate(context, mesh->component_count, sizeof *components);
+    if (triangles == NULL || components == NULL) {
+        context_free(context, triangles);
+        context_free(context, components);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    r->triangles = triangles;
+    r->components = components;
+    return CSCD_OK;
+}
+
+void rollback_free(cscd_context *context, rollback *r) {
+    context_free(context, r->triangles);
+    context_free(context, r->components);
+}
+
+void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees) {
+    if (r->triangles == NULL) return;
+    memcpy(r->triangles, starts->triangles, starts->mesh->triangle_count * sizeof *r->triangles);
+    memcpy(r->components, starts->of, starts->mesh->component_count * sizeof *r->components);
+    r->vouched = starts->vouched;
+    r->intervals_unmeasured = trees->intervals_unmeasured;
+}
+
+void rollback_restore(const rollback *r, start_states *starts, bvh_rebuild *trees) {
+    if (r->triangles == NULL) return;
+    memcpy(starts->triangles, r->triangles, starts->mesh->triangle_count * sizeof *r->triangles);
+    memcpy(starts->of, r->components, starts->mesh->component_count * sizeof *r->components);
+    starts->vouched = r->vouched;
+    starts->counted = false;
+    trees->intervals_unmeasured = r->intervals_unmeasured;
 }

@@ -1,20 +1,12 @@
 /* One interval through the stages of the pipeline. */
-#include "runtime/detector/step.h"
+#include "runtime/detector/detector.h"
 
-#include "runtime/culling/culling.h"
-#include "runtime/detector/adaptive.h"
-#include "runtime/detector/alone_search.h"
-#include "runtime/detector/contact_list.h"
-#include "runtime/detector/earliest_contacts.h"
-#include "runtime/detector/guarantee.h"
-#include "runtime/detector/interval_search.h"
-#include "runtime/detector/list_cap.h"
-#include "runtime/detector/waiting.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
 #include <math.h>
+#include <string.h>
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
@@ -31,26 +23,29 @@ typedef struct step_work {
 
 /* A first contact that is to be left out may hide the one to report: then mode EARLIEST finds all contacts, too. */
 static bool finds_all_contacts(const step_work *work) {
-    return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->exclusions);
+    return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->config.exclusions);
 }
 
 /* Are only the earliest contacts of each component with itself listed? The published methods promise nothing. */
 static bool lists_earliest(const step_work *work) {
-    return !finds_all_contacts(work) && !work->detector->traits->loses_contacts;
+    return !finds_all_contacts(work) && !work->detector->config.traits->loses_contacts;
 }
 
 static void begin_interval(step_work *work) {
     cscd_detector *d = work->detector;
     d->rebuild.rebuilt = false;
-    culling_clear(&d->culling);
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->culled[c] = d->closes[c] = false;
-    d->lists_earliest = lists_earliest(work);
-    earliest_begin(d);
-    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->contacts_seen[i] = 0;
-    if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
-    start_states_count(&d->starts);
-    adaptive_begin(d);
-    if (work->rehearsal) start_states_save(&d->starts);
+    culling_clear(&d->interval.culling);
+    for (uint32_t c = 0; c < d->mesh->component_count; c++)
+        d->interval.culled[c] = d->interval.closes[c] = false;
+    d->interval.lists_earliest = lists_earliest(work);
+    earliest_begin(&d->interval);
+    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->interval.contacts_seen[i] = 0;
+    if (config_culls(&d->config) && d->config.options.start == CSCD_START_VOUCHED)
+        start_states_vouch(&d->known.starts);
+    start_states_count(&d->known.starts);
+    interval_begin_counting(&d->interval, &d->config.rules, &d->known.starts,
+                            d->config.options.start == CSCD_START_PROVE);
+    if (work->rehearsal) start_states_save(&d->known.starts);
 }
 
 /* ---- start states, refit --------------------------------------------------------------------------- */
@@ -63,29 +58,31 @@ enum { UNPROVEN_SHARE = 16 };
 static cscd_status check_start(step_work *work) {
     cscd_detector *d = work->detector;
     progress_stage(&d->context->progress, "start", 0.0, 0.3);
-    const size_t longest = d->options.longest_list;
-    if (longest > 0) list_cap_begin_pairs(d, longest, NULL, NULL);
+    const list_cap *cap = &d->interval.cap;
+    if (cap->longest > 0) list_cap_begin_pairs(cap, &d->known.check, cap->longest, NULL, NULL);
     cscd_status status =
-        static_check_unproven(&d->check, &d->space.traversal, &d->space.bvh, work->search.interval.x0);
-    list_cap_end_check(d);
+        static_check_unproven(&d->known.check, &d->space.traversal, &d->space.bvh, work->search.interval.x0);
+    list_cap_end_pairs(&d->known.check);
     work->unproven = 0;
     if (status != CSCD_OK) return status;
-    start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
-    if (work->rehearsal) start_states_save(&d->starts);
+    start_states_checked(&d->known.starts, d->known.check.unproven, d->known.check.crossing);
+    if (work->rehearsal) start_states_save(&d->known.starts);
     return CSCD_OK;
 }
 
 static cscd_status prove_starts(step_work *work) {
     cscd_detector *d = work->detector;
-    if (!detector_culls(d) || d->rules.assumes_clean || d->options.start != CSCD_START_PROVE) return CSCD_OK;
+    if (!config_culls(&d->config) || d->config.rules.assumes_clean ||
+        d->config.options.start != CSCD_START_PROVE)
+        return CSCD_OK;
     double since = timer_now_ms();
     cscd_status status = CSCD_OK;
-    work->unproven =
-        start_states_mark_unproven(&d->starts, collapsed_marks(&d->collapsed), d->check.unproven);
+    work->unproven = start_states_mark_unproven(&d->known.starts, collapsed_marks(&d->known.collapsed),
+                                                d->known.check.unproven);
     work->search.counters.static_checks = work->unproven > 0;
     if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
         status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, work->search.interval.x0,
-                                     uniform_growth(0.0), detector_growth(d));
+                                     uniform_growth(0.0), config_growth(&d->config));
         if (status == CSCD_OK) status = check_start(work);
     }
     timer_lap(&since, &work->search.timings.proof_ms);
@@ -96,7 +93,7 @@ static cscd_status refit_trees(step_work *work) {
     cscd_detector *d = work->detector;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    volume_growth growth = detector_growth(d);
+    volume_growth growth = config_growth(&d->config);
     growth.beyond = interval->beyond;
     cscd_status status =
         bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval->x0, interval->x1, growth, growth);
@@ -116,41 +113,41 @@ static cscd_status prove_remaining_starts(step_work *work) {
 
 static cscd_status hide_pairs(step_work *work) {
     cscd_detector *d = work->detector;
-    if (!detector_hides_pairs(d)) return CSCD_OK;
+    if (!config_hides_pairs(&d->config)) return CSCD_OK;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    cscd_status status = d->stages->hider->hide(d->baseline_state, &d->space.bvh, interval->x0, interval->x1,
-                                                &work->search.counters);
+    cscd_status status = d->config.stages->hider->hide(d->config.baseline_state, &d->space.bvh, interval->x0,
+                                                       interval->x1, &work->search.counters);
     timer_lap(&since, &work->search.timings.contour_ms);
     return status;
 }
 
 static bool is_culled(const cscd_detector *d, uint32_t component, uint32_t clean, uint32_t triangle_count) {
-    if (!detector_culls(d) || d->never_culled[component]) return false;
-    if (d->rules.assumes_clean) return d->mesh->components[component].closed_manifold;
-    if (d->rules.where_it_pays && !d->starts.of[component].chosen) return false;
-    return start_states_pay(&d->starts, clean, triangle_count);
+    if (!config_culls(&d->config) || d->config.never_culled[component]) return false;
+    if (d->config.rules.assumes_clean) return d->mesh->components[component].closed_manifold;
+    if (d->config.rules.where_it_pays && !d->known.starts.of[component].chosen) return false;
+    return start_states_pay(&d->known.starts, clean, triangle_count);
 }
 
 /* Culls closed components in which nearly all triangles are clean. */
 static cscd_status choose_culled(step_work *work) {
     cscd_detector *d = work->detector;
-    if (detector_hides_pairs(d)) return CSCD_OK; /* instead of culling */
-    start_states_count(&d->starts);
+    if (config_hides_pairs(&d->config)) return CSCD_OK; /* instead of culling */
+    start_states_count(&d->known.starts);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_component *component = &d->mesh->components[c];
-        if (component_is_obstacle(d->mesh, c) || detector_masks(d, c)) continue;
-        if (d->leaves_collapsed && d->collapsed.marks[c]) {
+        if (component_is_obstacle(d->mesh, c) || config_masks(&d->config, d->mesh, c)) continue;
+        if (d->interval.leaves_collapsed && d->known.collapsed.marks[c]) {
             work->any_not_culled = true;
             continue;
         }
-        uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
+        uint32_t clean = component->closed_manifold ? d->known.starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
-        d->culled[c] = is_culled(d, c, clean, component->triangle_count);
-        d->closes[c] = d->culled[c] && d->stages->search == NULL;
-        work->any_culled |= d->culled[c];
-        work->any_not_culled |= !d->culled[c];
-        work->all_clean &= !d->culled[c] || embedded;
+        d->interval.culled[c] = is_culled(d, c, clean, component->triangle_count);
+        d->interval.closes[c] = d->interval.culled[c] && d->config.stages->search == NULL;
+        work->any_culled |= d->interval.culled[c];
+        work->any_not_culled |= !d->interval.culled[c];
+        work->all_clean &= !d->interval.culled[c] || embedded;
         work->search.counters.clean += clean;
     }
     return CSCD_OK;
@@ -158,24 +155,25 @@ static cscd_status choose_culled(step_work *work) {
 
 static orientation_query orientation_query_of(const step_work *work) {
     const cscd_detector *d = work->detector;
-    return (orientation_query){.culled = d->culled,
-                               .clean = work->all_clean ? NULL : start_states_clean(&d->starts),
-                               .detector_offsets = (const double(*)[3])d->culling.detector_offsets};
+    return (orientation_query){.culled = d->interval.culled,
+                               .clean = work->all_clean ? NULL : start_states_clean(&d->known.starts),
+                               .detector_offsets = (const double(*)[3])d->interval.culling.detector_offsets};
 }
 
 static cscd_status orient_triangles(step_work *work) {
     cscd_detector *d = work->detector;
     orientation_query query = orientation_query_of(work);
-    if (detector_region_count(d) > 0) bvh_detector_points(&d->space.bvh, &query, d->culling.detector_points);
+    if (detector_region_count(d) > 0)
+        bvh_detector_points(&d->space.bvh, &query, d->interval.culling.detector_points);
     if (!work->any_culled) return CSCD_OK;
     double since = timer_now_ms();
-    bvh_orient(&d->space.bvh, &query, d->culling.facing);
-    culling_begin(&d->culling);
+    bvh_orient(&d->space.bvh, &query, d->interval.culling.facing);
+    culling_begin(&d->interval.culling);
     timer_lap(&since, &work->search.timings.orientation_ms);
-    work->search.counters.plus = d->culling.plus;
-    work->search.counters.minus = d->culling.minus;
-    work->search.interval.culling = &d->culling;
-    work->search.interval.culled = d->culled;
+    work->search.counters.plus = d->interval.culling.plus;
+    work->search.counters.minus = d->interval.culling.minus;
+    work->search.interval.culling = &d->interval.culling;
+    work->search.interval.culled = d->interval.culled;
     return CSCD_OK;
 }
 
@@ -184,7 +182,7 @@ static cscd_status orient_triangles(step_work *work) {
 static cscd_status traverse_pairs(step_work *work) {
     cscd_detector *d = work->detector;
     cscd_status status =
-        detector_leave_collapsed(d, d->leaves_collapsed ? COLLAPSED_PAIRS_LEFT : COLLAPSED_FOUND);
+        detector_leave_collapsed(d, d->interval.leaves_collapsed ? COLLAPSED_PAIRS_LEFT : COLLAPSED_FOUND);
     if (status != CSCD_OK) return status;
     bool all_culled = work->any_culled && !work->any_not_culled;
     if (!all_culled) return interval_search_everything(&work->search);
@@ -198,21 +196,21 @@ static cscd_status traverse_pairs(step_work *work) {
 static uint32_t taint_by_contacts(const step_work *work) {
     cscd_detector *d = work->detector;
     const tainting t = {d->mesh,
-                        &d->starts,
-                        &d->culling,
-                        d->closes,
-                        d->touched,
-                        d->earliest,
-                        d->lists_earliest ? earliest_tainting : INFINITY};
+                        &d->known.starts,
+                        &d->interval.culling,
+                        d->interval.closes,
+                        d->interval.touched,
+                        d->interval.earliest,
+                        d->interval.lists_earliest ? earliest_tainting : INFINITY};
     uint32_t newly_kept = 0;
-    if (d->lists_earliest) earliest_note(d);
-    for (uint32_t i = 0; detector_culls(d) && i < d->space.traversal.lane_count; i++) {
+    if (d->interval.lists_earliest) earliest_note(&d->interval);
+    for (uint32_t i = 0; config_culls(&d->config) && i < d->space.traversal.lane_count; i++) {
         const contact_lane *lane = &d->space.lanes[i];
-        for (size_t j = d->contacts_seen[i]; j < lane->count; j++)
+        for (size_t j = d->interval.contacts_seen[i]; j < lane->count; j++)
             newly_kept += tainting_look(&t, contact_lane_at(lane, j));
-        d->contacts_seen[i] = lane->count;
+        d->interval.contacts_seen[i] = lane->count;
     }
-    if (detector_culls(d)) newly_kept += list_cap_taint(d, &t);
+    if (config_culls(&d->config)) newly_kept += list_cap_taint(&d->interval, &t);
     return newly_kept;
 }
 
@@ -224,14 +222,14 @@ static cscd_status close_contacts(step_work *work) {
     work->search.interval.closing_pass = true;
     for (;;) {
         double since = timer_now_ms();
-        culling_pass_done(&d->culling);
+        culling_pass_done(&d->interval.culling);
         if (taint_by_contacts(work) == 0) return CSCD_OK;
-        bvh_mark_newly_kept(&d->space.bvh, d->culling.earlier, d->culling.orientations);
+        bvh_mark_newly_kept(&d->space.bvh, d->interval.culling.earlier, d->interval.culling.orientations);
         timer_lap(&since, &work->search.timings.orientation_ms);
         cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_NEWLY_KEPT);
         if (status != CSCD_OK) return status;
         work->search.counters.passes++;
-        d->passes++;
+        d->interval.passes++;
     }
 }
 
@@ -251,10 +249,10 @@ static cscd_status collect_contacts(step_work *work) {
     cscd_detector *d = work->detector;
     work->search.counters.rebuilds = d->rebuild.rebuilt;
     taint_by_contacts(work);
-    if (d->lists_earliest) earliest_drop_later(d, earliest_share);
+    if (d->interval.lists_earliest) earliest_drop_later(&d->interval, earliest_share);
     double since = timer_now_ms();
-    cscd_status status = contact_list_collect(&d->space, &d->exclusions, &d->contacts, &work->search.counters,
-                                              &work->contacts);
+    cscd_status status = contact_list_collect(&d->space, &d->config.exclusions, &d->results.contacts,
+                                              &work->search.counters, &work->contacts);
     timer_lap(&since, &work->search.timings.contact_ms);
     return status;
 }
@@ -277,8 +275,38 @@ static cscd_status refit_for_proof(step_work *work) {
     return work->unproven > 0 ? refit_trees(work) : CSCD_OK;
 }
 
-static cscd_status search_alone(step_work *work) {
-    return search_interval_alone(work->detector, &work->search, work->all_clean);
+/* A method that searches by itself, with trees and tests of its own; contacts are left in the lanes. */
+typedef struct alone_work {
+    cscd_detector *detector;
+    own_interval interval;
+} alone_work;
+
+static void test_pairs_alone(void *data, uint32_t lane) {
+    alone_work *work = data;
+    cscd_detector *d = work->detector;
+    d->config.stages->search->test_pairs(d->config.baseline_state, &work->interval, &d->space.lanes[lane]);
+}
+
+static cscd_status search_alone(step_work *stage) {
+    cscd_detector *d = stage->detector;
+    interval_search *search = &stage->search;
+    const bool all = stage->all_clean || d->config.rules.assumes_clean;
+    alone_work work = {d,
+                       {.swept = &search->interval,
+                        .culling = &d->interval.culling,
+                        .culled = d->interval.culled,
+                        .clean = all ? NULL : start_states_clean(&d->known.starts),
+                        .ours = d->config.options.ours}};
+    progress_stage(&d->context->progress, "traversal", 0.3, 0.5);
+    cscd_status status = d->config.stages->search->find_pairs(d->config.baseline_state, &work.interval,
+                                                              &search->timings, &search->counters);
+    if (status != CSCD_OK) return status;
+    double since = timer_now_ms();
+    progress_stage(&d->context->progress, "elementary tests", 0.5, 0.9);
+    interval_search_run(search, 1, test_pairs_alone, &work);
+    timer_lap(&since, &search->timings.contact_ms);
+    status = search_space_status(&d->space);
+    return status == CSCD_OK ? context_progress_status(d->context) : status;
 }
 
 static cscd_status test_loose_without_trees(step_work *work) {
@@ -298,33 +326,147 @@ static cscd_status run_stages(step_stage *const *stages, step_work *work) {
     return status;
 }
 
+/* ---- what is promised ---------------------------------------------------------------------------------- */
+
+/* Returns the reason in a component's guarantee, for a method that culls. */
+static cscd_reason culling_reason(const cscd_detector *d, uint32_t component, bool embedded) {
+    if (d->config.never_culled[component]) return CSCD_REASON_METHOD;
+    if (!d->mesh->components[component].closed_manifold) return CSCD_REASON_SURFACE;
+    if (!embedded)
+        return d->known.starts.of[component].crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
+    return d->interval.touched[component] ? CSCD_REASON_FINISHED : CSCD_REASON_CLEAN;
+}
+
+/* What the current interval, all of whose stages are done, promises for the contacts of a component with itself. */
+static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
+    bool embedded = d->known.starts.of[component].clean == d->mesh->components[component].triangle_count;
+    if (component_is_obstacle(d->mesh, component))
+        return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
+    if (config_masks(&d->config, d->mesh, component)) return (cscd_guarantee){false, false, CSCD_REASON_MASK};
+    if (d->interval.leaves_collapsed && d->known.collapsed.marks[component])
+        return (cscd_guarantee){false, embedded, CSCD_REASON_COLLAPSED};
+    const bool by_method = config_culls(&d->config) || config_hides_pairs(&d->config);
+    if (config_searches_alone(&d->config)) return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
+    if (d->interval.lists_earliest && d->interval.earliest[component] < INFINITY)
+        return (cscd_guarantee){false, embedded, CSCD_REASON_EARLIEST};
+    if (!by_method) return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
+    if (!config_culls(&d->config)) return (cscd_guarantee){true, embedded, CSCD_REASON_CONTOUR};
+    return (cscd_guarantee){true, embedded, culling_reason(d, component, embedded)};
+}
+
+/* ---- intervals in which nothing touches ---------------------------------------------------------------- */
+
+/* Is every component that is looked at with itself culled as a whole in this interval? */
+static bool culls_all_components(const cscd_detector *d) {
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        const cscd_component *component = &d->mesh->components[c];
+        if (component_is_obstacle(d->mesh, c)) continue;
+        if (!component->closed_manifold || d->known.starts.of[c].clean != component->triangle_count)
+            return false;
+    }
+    return true;
+}
+
+/* Pairs of other kinds, distances and parts at rest go the usual way. */
+static bool list_is_usable(cscd_detector *d) {
+    if (d->config.options.coherence == CSCD_COHERENCE_OFF || !config_culls(&d->config) ||
+        d->config.traits->loses_contacts)
+        return false;
+    if (config_is_thick(&d->config) || d->config.pair_rules.sets != NULL || d->space.active.vertices != NULL)
+        return false;
+    if (d->interval.leaves_collapsed) return false;
+    if (mesh_has_loose_objects(d->mesh) || d->config.waiting.pairs.count > 0 || d->space.bvh.mesh == NULL)
+        return false;
+    start_states_count(&d->known.starts);
+    return culls_all_components(d);
+}
+
+/* Leaves the detector as a step does that culls everything and finds nothing. */
+static void end_quiet_interval(cscd_detector *d, const interval_search *search, step_outcome *out) {
+    const verlet_list *v = &d->known.verlet;
+    memcpy(d->interval.culling.facing, v->facing, d->mesh->triangle_count);
+    bvh_skin_points(&v->skin, d->interval.culling.detector_points);
+    d->rebuild.rebuilt = false;
+    d->interval.lists_earliest = false;
+    d->interval.passes = 0;
+    out->timings = search->timings;
+    out->counters.plus = v->plus;
+    out->counters.minus = v->minus;
+    out->counters.coherent = 1;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        d->results.guarantees[c] = guarantee_of(d, c);
+        out->counters.clean += d->interval.culled[c] ? d->known.starts.of[c].clean : 0;
+    }
+}
+
+/* Tests the pairs of the list. */
+static cscd_status test_list(cscd_detector *d, interval_search *search, step_outcome *out, bool *answered) {
+    step_outcome found = {.counters = {0}};
+    interval_cull_everything(&d->interval);
+    cscd_status status = candidates_test(&d->known.verlet.pairs, search);
+    if (status != CSCD_OK || search_space_found_any(&d->space)) return status;
+    status = contact_list_collect(&d->space, &d->config.exclusions, &d->results.contacts, &found.counters,
+                                  &found.contacts);
+    if (status != CSCD_OK) return status;
+    end_quiet_interval(d, search, &found);
+    *out = found;
+    d->known.verlet.serving = *answered = true;
+    return CSCD_OK;
+}
+
+/* Answers the interval, whose start states are known, from a list if it can: then nothing touches in it, and contacts,
+ * timings, counters and guarantees are written. If it cannot, *answered is false, and the trees are to be refitted. */
+static cscd_status answer_from_list(cscd_detector *d, const double *x0, const double *x1, step_outcome *out,
+                                    bool *answered) {
+    double since = timer_now_ms(), update_ms = 0.0;
+    bool holds;
+    d->known.verlet.serving = *answered = false;
+    d->known.verlet.spent_ms = 0.0;
+    if (!list_is_usable(d)) return CSCD_OK;
+    const verlet_place at = {&d->space, &d->rebuild, config_growth(&d->config), &d->interval,
+                             d->known.starts.revision};
+    cscd_status status = verlet_list_find(&d->known.verlet, &at, x0, x1, &holds);
+    timer_lap(&since, &update_ms);
+    d->known.verlet.spent_ms = update_ms;
+    if (status != CSCD_OK || !holds) return status;
+    interval_search search = config_search_begin(&d->config, &d->space, x0, x1);
+    search.timings.update_ms = update_ms;
+    status = test_list(d, &search, out, answered);
+    timer_lap(&since, *answered ? &out->timings.contact_ms : &d->known.verlet.spent_ms);
+    return status;
+}
+
+/* ---- one interval, either way -------------------------------------------------------------------------- */
+
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out) {
     bool answered;
-    if (rehearsal) start_states_save(&d->starts);
+    if (rehearsal) start_states_save(&d->known.starts);
     detector_find_collapsed(d, x0, x1);
-    d->leaves_collapsed = !rehearsal && d->collapsed.count > 0;
-    cscd_status status = verlet_list_answer(d, x0, x1, out, &answered);
+    d->interval.leaves_collapsed = !rehearsal && d->known.collapsed.count > 0;
+    cscd_status status = answer_from_list(d, x0, x1, out, &answered);
     if (status != CSCD_OK || answered) return status;
     step_work work = {.detector = d,
-                      .search =
-                          rehearsal ? detector_search_floors(d, x0, x1) : detector_search_begin(d, x0, x1),
+                      .search = rehearsal ? detector_search_floors(d, x0, x1)
+                                          : config_search_begin(&d->config, &d->space, x0, x1),
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
-    if (d->leaves_collapsed) work.search.interval.filter.collapsed = d->collapsed.marks;
-    work.search.timings.update_ms = d->verlet.spent_ms;
+    if (d->interval.leaves_collapsed) work.search.interval.filter.collapsed = d->known.collapsed.marks;
+    work.search.timings.update_ms = d->known.verlet.spent_ms;
     begin_interval(&work);
-    if (!rehearsal) list_cap_begin(d, &work.search, d->lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
-    status = run_stages(d->stages->brute_force       ? stages_by_brute_force
-                        : detector_searches_alone(d) ? stages_alone
-                                                     : stages_by_trees,
+    if (!rehearsal)
+        list_cap_begin(&d->interval, &work.search,
+                       d->interval.lists_earliest ? CAP_KEEPS_EARLIEST : CAP_TAINTS_ALL);
+    status = run_stages(d->config.stages->brute_force       ? stages_by_brute_force
+                        : config_searches_alone(&d->config) ? stages_alone
+                                                            : stages_by_trees,
                         &work);
     d->space.traversal.collapsed = COLLAPSED_FOUND;
     if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(d, c);
-    d->verlet.now.was_quiet = work.contacts.count == 0;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->results.guarantees[c] = guarantee_of(d, c);
+    d->known.verlet.now.was_quiet = work.contacts.count == 0;
     out->contacts = work.contacts;
     out->timings = work.search.timings;
     out->counters = work.search.counters;
@@ -337,14 +479,32 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
  * without culling they matter only if a static check has left some. */
 cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end) {
     uint32_t vertices = d->mesh->vertex_count;
-    bool seen = start_states_hold(&d->starts, start);
+    bool seen = start_states_hold(&d->known.starts, start);
     cscd_status status = seen ? CSCD_OK : positions_check(d->context, start, vertices, "x0");
     if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "x1");
     if (status == CSCD_OK) status = detector_check_still(d, start, end);
-    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, start);
-    if (status == CSCD_OK && !seen && (detector_culls(d) || d->starts.known))
-        start_states_begin(&d->starts, start);
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->config.exclusions.seams, start);
+    if (status == CSCD_OK && !seen && (config_culls(&d->config) || d->known.starts.known))
+        start_states_begin(&d->known.starts, start);
     return status;
+}
+
+void step_take(cscd_detector *d, const double *end) {
+    if (!config_culls(&d->config)) {
+        start_states_forget(&d->known.starts); /* contacts have tainted nothing */
+        return;
+    }
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        const cscd_guarantee *g = &d->results.guarantees[c];
+        d->interval.incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
+    }
+    if (!d->known.verlet.serving) interval_learn(&d->interval, &d->config.rules, &d->known.starts);
+    start_states_end(&d->known.starts, end, d->interval.incomplete);
+    verlet_list_take(&d->known.verlet, d->known.starts.revision);
+}
+
+void step_withdraw(cscd_detector *d) {
+    if (config_culls(&d->config)) start_states_restore(&d->known.starts);
 }
 
 static cscd_status step_between(cscd_detector *d, const double *x0, const double *x1, cscd_contacts *out) {
@@ -354,19 +514,20 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
 
     step_outcome found;
     detector_begin_call(d);
-    status = waiting_settle(d, x0);
-    if (status == CSCD_OK) status = step_find(d, x0, x1, d->options.mode, false, &found);
+    const waiting_place waiting = detector_waiting_place(d);
+    status = waiting_settle(&waiting, x0);
+    if (status == CSCD_OK) status = step_find(d, x0, x1, d->config.options.mode, false, &found);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status == CSCD_LIST_TOO_LONG) {
         *out = found.contacts;
-        list_cap_fail(d, out->count);
+        list_cap_fail(d->context, &d->interval.cap, out->count);
     }
     if (status != CSCD_OK) return detector_fail_call(d, status);
     step_take(d, x1);
     timer_lap(&since, &found.timings.total_ms);
-    found.timings.check_ms = d->timings.check_ms;
-    d->timings = found.timings;
-    d->counters = found.counters;
+    found.timings.check_ms = d->results.timings.check_ms;
+    d->results.timings = found.timings;
+    d->results.counters = found.counters;
     *out = found.contacts;
     return CSCD_OK;
 }

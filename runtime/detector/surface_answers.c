@@ -1,8 +1,6 @@
 /* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
 #include "runtime/detector/surface_answers.h"
 
-#include "runtime/intersections/intersections.h"
-
 void surface_answers_free(cscd_context *context, surface_answers *a) {
     if (a == NULL) return;
     same_solids_free(&a->same_solids);
@@ -25,15 +23,13 @@ static bool patches_wanted(const cscd_intersection_options *options) {
     return options->patches || options->overlaps || options->cut_offs || options->depths;
 }
 
-/* Returns the detector's answers, made if need be; NULL: no memory. */
-static surface_answers *make_answers(cscd_detector *d) {
-    if (d->answers != NULL) return d->answers;
-    cscd_context *context = d->context;
+static surface_answers *make_answers(const cscd_mesh *mesh) {
+    cscd_context *context = mesh->context;
     surface_answers *a = context_allocate(context, 1, sizeof *a);
     if (a == NULL) return NULL;
     a->names.context = a->left_out.context = a->joiner.context = context;
     a->same_solids.context = context;
-    a->orientations = orientation_finder_create(d->mesh);
+    a->orientations = orientation_finder_create(mesh);
     a->overlap_finder = overlap_finder_create(context);
     a->cut_off_finder = cut_off_finder_create(context);
     a->depth_finder = depth_finder_create(context);
@@ -42,21 +38,21 @@ static surface_answers *make_answers(cscd_detector *d) {
         surface_answers_free(context, a);
         return NULL;
     }
-    d->answers = a;
     return a;
 }
 
 /* It is not there in the first call, nor after one in which patches did not fit. */
-static bool make_patch_finder(const cscd_detector *d, surface_answers *a) {
+static bool make_patch_finder(const search_space *space, surface_answers *a) {
     return a->patch_finder.mesh != NULL ||
-           patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) == CSCD_OK;
+           patch_finder_create(space->mesh, space->traversal.lane_count, &a->patch_finder) == CSCD_OK;
 }
 
-left_out_pairs *surface_answers_begin(cscd_detector *d) {
-    const size_t before = memory_bytes(&d->context->memory);
-    surface_answers *a = make_answers(d);
-    if (a == NULL || !make_patch_finder(d, a)) return NULL;
-    a->kept += memory_bytes(&d->context->memory) - before;
+left_out_pairs *surface_answers_begin(const search_space *space, surface_answers **answers) {
+    const size_t before = memory_bytes(&space->context->memory);
+    if (*answers == NULL) *answers = make_answers(space->mesh);
+    surface_answers *a = *answers;
+    if (a == NULL || !make_patch_finder(space, a)) return NULL;
+    a->kept += memory_bytes(&space->context->memory) - before;
     a->left_out.count = 0;
     a->left_out.out_of_memory = false;
     return &a->left_out;
@@ -74,10 +70,10 @@ void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_i
     budget->exceeded = false;
 }
 
-void surface_answers_shrink(cscd_detector *d, size_t most) {
-    if (d->answers == NULL || d->answers->kept <= most) return;
-    surface_answers_free(d->context, d->answers);
-    d->answers = NULL;
+void surface_answers_shrink(cscd_context *context, surface_answers **answers, size_t most) {
+    if (*answers == NULL || (*answers)->kept <= most) return;
+    surface_answers_free(context, *answers);
+    *answers = NULL;
 }
 
 /* Of what a call asks for; what needs something that is left out is left out with it. */
@@ -93,8 +89,7 @@ static void leave_out_all(const cscd_intersection_options *o, memory_budget *bud
     }
 }
 
-void surface_answers_leave_out_list(const cscd_intersection_options *options,
-                                    cscd_intersections *found) {
+void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersections *found) {
     memory_budget none = {.most = 0};
     surface_answers_leave_out(&none, CSCD_LEFT_OUT_PAIRS, found);
     leave_out_all(options, &none, found);
@@ -104,7 +99,8 @@ void surface_answers_leave_out_list(const cscd_intersection_options *options,
 /* ---- one after the other ------------------------------------------------------------------------------- */
 
 typedef struct answer_search {
-    cscd_detector *detector;
+    surface_answers *answers;
+    const surface_scene *scene;
     const cscd_intersection_options *options;
     memory_budget *budget;
     named_surface *surface; /* that of the cuts; orientations are found for patches */
@@ -120,8 +116,8 @@ static bool did_not_fit(const answer_search *s, cscd_status status, size_t taken
 }
 
 static cscd_status find_curves(const answer_search *s) {
-    surface_answers *a = s->detector->answers;
-    progress_stage(&s->detector->context->progress, "curves", 0.7, 0.8);
+    surface_answers *a = s->answers;
+    progress_stage(&s->scene->space->context->progress, "curves", 0.7, 0.8);
     if (!memory_budget_take(s->budget, 1, curve_joiner_size(s->found->count))) return CSCD_OUT_OF_MEMORY;
     cscd_status status =
         curve_joiner_run(&a->joiner, s->cuts->surface, s->found->items, s->found->count, &a->curves);
@@ -135,28 +131,29 @@ static bool shells_have_labels(const cscd_intersection_options *o) {
 }
 
 static cscd_status find_patches(const answer_search *s) {
-    cscd_detector *d = s->detector;
-    surface_answers *a = d->answers;
-    a->patch_finder.objects = d->pair_rules.sets;
+    const surface_scene *scene = s->scene;
+    surface_answers *a = s->answers;
+    a->patch_finder.objects = scene->config->pair_rules.sets;
     a->patch_finder.budget = s->budget;
-    progress_stage(&d->context->progress, "patches", 0.8, 0.9);
+    progress_stage(&scene->space->context->progress, "patches", 0.8, 0.9);
     const orientation_request shells = {
-        .labels = shells_have_labels(s->options) ? detector_grouping(d)->triangles : NULL,
-        .by_component = s->options->part_bodies && detector_bodies_are_components(d),
+        .labels = shells_have_labels(s->options) ? config_grouping(scene->config)->triangles : NULL,
+        .by_component =
+            s->options->part_bodies && config_bodies_are_components(scene->config, scene->space->mesh),
         .as_given = s->options->orientation == CSCD_ORIENTATION_AS_GIVEN,
         .pairs = s->found->items,
         .pair_count = s->found->count};
     if ((s->options->part_bodies || !shells.as_given) &&
-        !orientation_finder_run(a->orientations, s->surface, &d->space.bvh, &shells))
+        !orientation_finder_run(a->orientations, s->surface, &scene->space->bvh, &shells))
         return CSCD_OUT_OF_MEMORY;
-    cscd_status status = patch_finder_run(&a->patch_finder, s->cuts->surface, &d->space.bvh, a->joiner.found,
-                                          a->joiner.piece_count, &a->patches);
+    cscd_status status = patch_finder_run(&a->patch_finder, s->cuts->surface, &scene->space->bvh,
+                                          a->joiner.found, a->joiner.piece_count, &a->patches);
     if (status == CSCD_OK) s->found->patches = &a->patches;
     return status;
 }
 
 static cscd_status find_overlaps(const answer_search *s) {
-    surface_answers *a = s->detector->answers;
+    surface_answers *a = s->answers;
     const size_t before = s->budget->taken;
     cscd_status status = overlap_finder_run(a->overlap_finder, s->cuts, &a->left_out, &a->overlaps);
     if (status == CSCD_OK) s->found->overlaps = &a->overlaps;
@@ -167,7 +164,7 @@ static cscd_status find_overlaps(const answer_search *s) {
 }
 
 static cscd_status find_cut_offs(const answer_search *s) {
-    surface_answers *a = s->detector->answers;
+    surface_answers *a = s->answers;
     const size_t before = s->budget->taken;
     cscd_status status = cut_off_finder_run(a->cut_off_finder, s->cuts, &a->cut_offs);
     if (status == CSCD_OK) s->found->cut_offs = &a->cut_offs;
@@ -179,18 +176,18 @@ static cscd_status find_cut_offs(const answer_search *s) {
 
 /* Which bodies are copies; uses the finder of overlaps. */
 static cscd_status find_same_solids(const answer_search *s) {
-    surface_answers *a = s->detector->answers;
+    surface_answers *a = s->answers;
     return same_solids_find(&a->same_solids, s->cuts, s->found->items, s->found->count, &a->depths,
                             a->overlap_finder, &a->left_out);
 }
 
 static cscd_status find_depths(const answer_search *s) {
-    cscd_detector *d = s->detector;
-    surface_answers *a = d->answers;
+    const surface_scene *scene = s->scene;
+    surface_answers *a = s->answers;
     const size_t before = s->budget->taken;
-    progress_stage(&d->context->progress, "depths", 0.9, 1.0);
-    const depth_request request = {&d->space.bvh, &d->parts, s->found->items, s->found->count,
-                                   s->options->depth_limit};
+    progress_stage(&scene->space->context->progress, "depths", 0.9, 1.0);
+    const depth_request request = {&scene->space->bvh, &scene->config->parts, s->found->items,
+                                   s->found->count, s->options->depth_limit};
     cscd_status status = depth_finder_run(a->depth_finder, s->cuts, &request, &a->depths);
     if (status == CSCD_OK) status = find_same_solids(s);
     if (did_not_fit(s, status, before)) {
@@ -208,7 +205,7 @@ static cscd_status find_depths(const answer_search *s) {
 
 /* Curves and patches, which all others need. */
 static cscd_status find_base(const answer_search *s) {
-    surface_answers *a = s->detector->answers;
+    surface_answers *a = s->answers;
     const size_t before = s->budget->taken;
     const bool patches = patches_wanted(s->options);
     cscd_status status = find_curves(s);
@@ -238,21 +235,23 @@ static cscd_status find_answers(const answer_search *s) {
     return status;
 }
 
-cscd_status surface_answers_find(cscd_detector *d, const double *positions,
+cscd_status surface_answers_find(surface_answers *a, const surface_scene *scene,
                                  const cscd_intersection_options *options, memory_budget *budget,
                                  cscd_intersections *found) {
-    surface_answers *a = d->answers;
-    const size_t before = memory_bytes(&d->context->memory);
+    const detector_config *config = scene->config;
+    const cscd_mesh *mesh = scene->space->mesh;
+    const host_memory *memory = &scene->space->context->memory;
+    const size_t before = memory_bytes(memory);
     if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
-    named_surface surface = {.mesh = d->mesh,
-                             .positions = positions,
-                             .bodies = options->part_bodies ? &detector_grouping(d)->bodies : NULL,
-                             .collapsed = d->check.collapsed};
-    if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
+    named_surface surface = {.mesh = mesh,
+                             .positions = scene->positions,
+                             .bodies = options->part_bodies ? &config_grouping(config)->bodies : NULL,
+                             .collapsed = scene->collapsed};
+    if (!placed_names_find(&a->names, mesh, scene->positions, config->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;
     const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder, budget};
-    const answer_search search = {d, options, budget, &surface, &cuts, found};
+    const answer_search search = {a, scene, options, budget, &surface, &cuts, found};
     cscd_status status = find_answers(&search);
-    a->kept += memory_bytes(&d->context->memory) - before; /* may be fewer than before */
+    a->kept += memory_bytes(memory) - before; /* may be fewer than before */
     return status;
 }

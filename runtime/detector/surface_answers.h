@@ -2,10 +2,8 @@
 #pragma once
 
 #include "runtime/depths/depths.h"
-#include "runtime/detector/detector.h"
+#include "runtime/detector/config.h"
 #include "runtime/intersections/intersections.h"
-
-#include <cscd/surface.h>
 
 /* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
 typedef struct surface_answers {
@@ -26,18 +24,26 @@ typedef struct surface_answers {
     cscd_depths depths;
 } surface_answers;
 
+/* The surfaces that are asked about. */
+typedef struct surface_scene {
+    const detector_config *config;
+    search_space *space; /* whose trees are at the positions */
+    const double *positions;
+    const bool *collapsed; /* per component; NULL: none is */
+} surface_scene;
+
 void surface_answers_free(cscd_context *context, surface_answers *a);
 
 /* Does the caller want any of them? */
 bool surface_answers_wanted(const cscd_intersection_options *options);
 
 /* The list, now empty, of the pairs that the call leaves out, which is to be filled where overlaps are wanted. To be called
- * before the other function. NULL: no memory. */
-left_out_pairs *surface_answers_begin(cscd_detector *d);
+ * before the other function. Makes the answers if there are none. NULL: no memory. */
+left_out_pairs *surface_answers_begin(const search_space *space, surface_answers **answers);
 
 /* Adds to *found, which has all pairs, what the options ask for and the budget has room for. The trees are at the positions.
  * OUT_OF_MEMORY and CANCELLED have no sentence. */
-cscd_status surface_answers_find(cscd_detector *d, const double *positions,
+cscd_status surface_answers_find(surface_answers *a, const surface_scene *scene,
                                  const cscd_intersection_options *options, memory_budget *budget,
                                  cscd_intersections *found);
 
@@ -48,4 +54,4 @@ void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_i
 void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersections *found);
 
 /* Gives back what is kept from one call to the next, if that is more than so many bytes. */
-void surface_answers_shrink(cscd_detector *d, size_t most);
+void surface_answers_shrink(cscd_context *context, surface_answers **answers, size_t most);

@@ -7,9 +7,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh.h"
-#include "runtime/detector/candidates.h"
-
-struct step_outcome;
+#include "runtime/detector/interval.h"
 
 /* What a call that fails puts back. */
 typedef struct verlet_state {
@@ -17,7 +15,7 @@ typedef struct verlet_state {
     uint64_t revision; /* of start_states */
     bool was_quiet;    /* the last interval that was not answered from a list had no contacts */
     uint32_t served;   /* intervals that were answered since the list was made */
-    uint32_t waiting;  /* intervals until the next list may be made */
+    uint32_t pause;    /* intervals until the next list may be made */
     uint32_t backoff;  /* intervals that the last list of no use was followed by without one */
     double edge;       /* the mean length of some edges; 0: it is not known */
 } verlet_state;
@@ -37,13 +35,21 @@ typedef struct verlet_list {
 void verlet_list_begin_call(verlet_list *v);
 void verlet_list_undo(verlet_list *v);
 
-/* Looks at an interval of which the states of the start are known, and answers it if it can: then nothing touches in it, and
- * contacts, timings, counters and guarantees are written. If it cannot, *answered is false, and the trees are to be refitted,
- * as ever. */
-cscd_status verlet_list_answer(cscd_detector *d, const double *x0, const double *x1, struct step_outcome *out,
-                               bool *answered);
+/* What a list is made with: trees and how they are widened in a step, the interval, and the start of which it is made. */
+typedef struct verlet_place {
+    search_space *space;
+    bvh_rebuild *rebuild;
+    volume_growth growth;
+    detector_interval *interval;
+    uint64_t revision; /* of start_states */
+} verlet_place;
 
-/* The vertices have gone to the end of the interval. */
-void verlet_list_take(cscd_detector *d);
+/* Says whether there is a list that holds throughout the interval, in which everything is culled. Makes one if it promises to
+ * be of use. */
+cscd_status verlet_list_find(verlet_list *v, const verlet_place *at, const double *x0, const double *x1,
+                             bool *holds);
+
+/* The vertices have gone to the end of an interval that was answered from the list; the states there have this revision. */
+void verlet_list_take(verlet_list *v, uint64_t revision);
 
 void verlet_list_free(cscd_context *context, verlet_list *v);

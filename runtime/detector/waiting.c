@@ -10,7 +10,7 @@
 
 /* The positions that pairs are looked at, and what is left out there without those that wait. */
 typedef struct settling {
-    cscd_detector *detector;
+    const waiting_place *at;
     const double *x;
     interval_search search; /* at rest */
     exclusions others;      /* without the caller's function, which is asked about lists only */
@@ -19,8 +19,13 @@ typedef struct settling {
 } settling;
 
 /* Pairs wait whether their vertices are active or not. */
-static settling settle_at(cscd_detector *d, const double *x, named_pair_set *set) {
-    settling s = {d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set, false};
+static settling settle_at(const waiting_place *at, const double *x, named_pair_set *set) {
+    settling s = {at,
+                  x,
+                  config_search_begin(at->config, at->space, x, x),
+                  exclusions_listed(&at->config->exclusions),
+                  set,
+                  false};
     s.search.interval.filter.active = NULL;
     return s;
 }
@@ -33,7 +38,7 @@ enum { PAIRS_PER_TASK = 1024 };
 static bool is_left_out(const settling *s, const named_pair *pair) {
     cscd_contact_kind kind = (cscd_contact_kind)pair->kind;
     uint32_t objects[2];
-    mesh_objects_of_pair(s->detector->mesh, kind, pair->a, pair->b, objects);
+    mesh_objects_of_pair(s->at->space->mesh, kind, pair->a, pair->b, objects);
     return !pair_filter_admits_objects(&s->search.interval.filter, objects[0], objects[1]) ||
            exclusions_cover(&s->others, kind, pair->a, pair->b, s->x);
 }
@@ -43,7 +48,7 @@ static bool points_touch(const settling *s, const named_pair *pair) {
     const floor_ladder ladder = {1.0, 0.5, 0.0};
     double points[4][3];
     cscd_stencil stencil =
-        mesh_stencil(s->detector->mesh, (cscd_contact_kind)pair->kind, pair->a, pair->b, 0.5, 0.5);
+        mesh_stencil(s->at->space->mesh, (cscd_contact_kind)pair->kind, pair->a, pair->b, 0.5, 0.5);
     uint32_t ends[4] = {stencil.vertices[0], stencil.vertices[1], stencil.vertices[2], stencil.vertices[3]};
     if (pair->kind == CSCD_CONTACT_VV) ends[1] = ends[0];
     for (int i = 0; i < 4; i++) memcpy(points[i], s->x + (size_t)ends[i] * 3, sizeof points[i]);
@@ -67,7 +72,7 @@ static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane
 /* A lane tests its share of the pairs, and marks those that are not apart. */
 static void mark_share(void *data, uint32_t index) {
     const settling *s = data;
-    const search_space *space = &s->detector->space;
+    const search_space *space = s->at->space;
     contact_lane *lane = &space->lanes[index];
     size_t begin = parallel_share(s->set->count, index, space->traversal.lane_count);
     size_t end = parallel_share(s->set->count, index + 1, space->traversal.lane_count);
@@ -83,31 +88,33 @@ static void mark_share(void *data, uint32_t index) {
 }
 
 static void mark_all(settling *s) {
-    progress *watched = &s->detector->context->progress;
+    progress *watched = &s->at->space->context->progress;
     progress_outer outer = progress_enter(watched, "waiting pairs");
-    parallel_run(s->detector->context->threads, s->detector->space.traversal.lane_count, mark_share, s);
+    parallel_run(s->at->space->context->threads, s->at->space->traversal.lane_count, mark_share, s);
     progress_leave(watched, outer);
 }
 
 /* Lets go of the pairs that are apart now, or that are left out otherwise. */
-static cscd_status let_go(cscd_detector *d, const double *x, named_pair_set *set) {
-    settling s = settle_at(d, x, set);
+static cscd_status let_go(const waiting_place *at, const double *x, named_pair_set *set) {
+    settling s = settle_at(at, x, set);
     mark_all(&s);
-    cscd_status status = search_space_status(&d->space);
-    if (status == CSCD_OK) status = context_progress_status(d->context);
+    cscd_status status = search_space_status(at->space);
+    if (status == CSCD_OK) status = context_progress_status(at->space->context);
     if (status == CSCD_OK) named_pair_set_keep_marked(set);
     return status;
 }
 
-cscd_status waiting_only_touching(cscd_detector *d, const double *x) {
-    if (d->waiting.pairs.count == 0 || (d->limit.distance == 0.0 && !detector_thick(d))) return CSCD_OK;
-    settling s = settle_at(d, x, &d->waiting.pairs);
-    s.search = interval_search_begin(&d->space, x, x, (separation){0.0, 0.0});
+cscd_status waiting_only_touching(const waiting_place *at, const double *x) {
+    if (at->config->waiting.pairs.count == 0 ||
+        (at->config->limit.distance == 0.0 && !config_is_thick(at->config)))
+        return CSCD_OK;
+    settling s = settle_at(at, x, &at->config->waiting.pairs);
+    s.search = interval_search_begin(at->space, x, x, (separation){0.0, 0.0});
     s.touching = true;
     mark_all(&s);
-    cscd_status status = search_space_status(&d->space);
-    if (status == CSCD_OK) status = context_progress_status(d->context);
-    d->exclusions.marked_wait = status == CSCD_OK;
+    cscd_status status = search_space_status(at->space);
+    if (status == CSCD_OK) status = context_progress_status(at->space->context);
+    at->config->exclusions.marked_wait = status == CSCD_OK;
     return status;
 }
 
@@ -122,17 +129,17 @@ static bool add_all(cscd_context *context, const named_pair_set *from, named_pai
 }
 
 /* Those that are not apart begin to wait. */
-static cscd_status take_torn(cscd_detector *d, const double *x) {
-    waiting_pairs *w = &d->waiting;
+static cscd_status take_torn(const waiting_place *at, const double *x) {
+    waiting_pairs *w = &at->config->waiting;
     if (w->torn.count == 0) return CSCD_OK;
-    cscd_status status = let_go(d, x, &w->torn);
+    cscd_status status = let_go(at, x, &w->torn);
     if (status != CSCD_OK) return status;
     named_pair_set all = {.items = NULL};
-    bool made = add_all(d->context, &w->pairs, &all) && add_all(d->context, &w->torn, &all) &&
-                named_pair_set_sort(d->context, &all);
-    named_pair_set_free(d->context, made ? &w->pairs : &all);
+    bool made = add_all(at->space->context, &w->pairs, &all) && add_all(at->space->context, &w->torn, &all) &&
+                named_pair_set_sort(at->space->context, &all);
+    named_pair_set_free(at->space->context, made ? &w->pairs : &all);
     if (!made) return CSCD_OUT_OF_MEMORY;
-    named_pair_set_free(d->context, &w->torn);
+    named_pair_set_free(at->space->context, &w->torn);
     w->pairs = all;
     return CSCD_OK;
 }
@@ -141,20 +148,20 @@ static cscd_status take_torn(cscd_detector *d, const double *x) {
 
 /* Should this pair, which touches, wait from now on? */
 static bool should_wait(const settling *s, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    const cscd_detector *d = s->detector;
+    const waiting_place *at = s->at;
     return !exclusions_cover(&s->others, kind, a, b, s->x) &&
-           (named_pair_set_has(&d->waiting.pairs, kind, a, b) ||
-            waiting_pairs_uncovered(d->mesh, &d->waiting, kind, a, b, s->x));
+           (named_pair_set_has(&at->config->waiting.pairs, kind, a, b) ||
+            waiting_pairs_uncovered(at->space->mesh, &at->config->waiting, kind, a, b, s->x));
 }
 
 static cscd_status add_features(settling *s) {
-    cscd_detector *d = s->detector;
-    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) {
-        const contact_lane *lane = &d->space.lanes[i];
+    const waiting_place *at = s->at;
+    for (uint32_t i = 0; i < at->space->traversal.lane_count; i++) {
+        const contact_lane *lane = &at->space->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             const cscd_contact *c = contact_lane_at(lane, j);
             if (should_wait(s, c->kind, c->a, c->b) &&
-                !named_pair_set_add(d->context, s->set, c->kind, c->a, c->b))
+                !named_pair_set_add(at->space->context, s->set, c->kind, c->a, c->b))
                 return CSCD_OUT_OF_MEMORY;
         }
     }
@@ -162,13 +169,13 @@ static cscd_status add_features(settling *s) {
 }
 
 static cscd_status add_triangles(settling *s) {
-    cscd_detector *d = s->detector;
-    for (uint32_t i = 0; i < d->check.lane_count; i++) {
-        const intersection_lane *lane = &d->check.lanes[i];
+    const waiting_place *at = s->at;
+    for (uint32_t i = 0; i < at->check->lane_count; i++) {
+        const intersection_lane *lane = &at->check->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             found_pair c = lane->items[j];
             if (should_wait(s, CSCD_CONTACT_TT, c.a, c.b) &&
-                !named_pair_set_add(d->context, s->set, CSCD_CONTACT_TT, c.a, c.b))
+                !named_pair_set_add(at->space->context, s->set, CSCD_CONTACT_TT, c.a, c.b))
                 return CSCD_OUT_OF_MEMORY;
         }
     }
@@ -176,57 +183,58 @@ static cscd_status add_triangles(settling *s) {
 }
 
 static cscd_status search_at_rest(settling *s) {
-    cscd_detector *d = s->detector;
-    cscd_status status =
-        bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, s->x, detector_growth(d), detector_growth(d));
+    const waiting_place *at = s->at;
+    cscd_status status = bvh_rebuild_move_to(at->rebuild, &at->space->bvh, s->x, config_growth(at->config),
+                                             config_growth(at->config));
     if (status != CSCD_OK) return status;
-    if (d->stages->brute_force) return interval_search_by_brute_force(&s->search);
+    if (at->config->stages->brute_force) return interval_search_by_brute_force(&s->search);
     status = interval_search_everything(&s->search);
     return status == CSCD_OK ? interval_search_loose(&s->search) : status;
 }
 
 static cscd_status find_touching(settling *s) {
-    cscd_detector *d = s->detector;
-    d->space.traversal.whole = true;
+    const waiting_place *at = s->at;
+    at->space->traversal.whole = true;
     cscd_status status = search_at_rest(s);
     if (status == CSCD_OK) status = add_features(s);
-    if (status == CSCD_OK) status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s->x);
-    d->space.traversal.whole = false;
+    if (status == CSCD_OK) status = static_check_all(at->check, &at->space->traversal, &at->space->bvh, s->x);
+    at->space->traversal.whole = false;
     if (status == CSCD_OK) status = add_triangles(s);
-    if (status == CSCD_OK && !named_pair_set_sort(d->context, s->set)) status = CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK && !named_pair_set_sort(at->space->context, s->set)) status = CSCD_OUT_OF_MEMORY;
     return status;
 }
 
 /* The search finds the pairs that wait already, too, unless they are apart. */
-static cscd_status take_uncovered(cscd_detector *d, const double *x, bool letting_go) {
+static cscd_status take_uncovered(const waiting_place *at, const double *x, bool letting_go) {
     named_pair_set set = {.items = NULL};
-    settling s = settle_at(d, x, &set);
-    progress_part(&d->context->progress, 0.0, 0.2);
+    settling s = settle_at(at, x, &set);
+    progress_part(&at->space->context->progress, 0.0, 0.2);
     cscd_status status = CSCD_OK;
-    if (!letting_go && !add_all(d->context, &d->waiting.pairs, &set)) status = CSCD_OUT_OF_MEMORY;
+    if (!letting_go && !add_all(at->space->context, &at->config->waiting.pairs, &set))
+        status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = find_touching(&s);
-    progress_part(&d->context->progress, 0.2, 1.0);
+    progress_part(&at->space->context->progress, 0.2, 1.0);
     if (status != CSCD_OK) {
-        named_pair_set_free(d->context, &set);
+        named_pair_set_free(at->space->context, &set);
         return status;
     }
-    named_pair_set_free(d->context, &d->waiting.pairs);
-    d->waiting.pairs = set;
-    waiting_pairs_settled(d->mesh, &d->waiting);
+    named_pair_set_free(at->space->context, &at->config->waiting.pairs);
+    at->config->waiting.pairs = set;
+    waiting_pairs_settled(at->space->mesh, &at->config->waiting);
     return CSCD_OK;
 }
 
 /* ---- either --------------------------------------------------------------------------------------------- */
 
-cscd_status waiting_settle(cscd_detector *d, const double *x) {
-    cscd_status status = take_torn(d, x);
+cscd_status waiting_settle(const waiting_place *at, const double *x) {
+    cscd_status status = take_torn(at, x);
     if (status != CSCD_OK) return status;
-    if (d->waiting.former != NULL) return take_uncovered(d, x, true);
-    return d->waiting.pairs.count > 0 ? let_go(d, x, &d->waiting.pairs) : CSCD_OK;
+    if (at->config->waiting.former != NULL) return take_uncovered(at, x, true);
+    return at->config->waiting.pairs.count > 0 ? let_go(at, x, &at->config->waiting.pairs) : CSCD_OK;
 }
 
-cscd_status waiting_look(cscd_detector *d, const double *x) {
-    cscd_status status = take_torn(d, x);
+cscd_status waiting_look(const waiting_place *at, const double *x) {
+    cscd_status status = take_torn(at, x);
     if (status != CSCD_OK) return status;
-    return d->waiting.former != NULL ? take_uncovered(d, x, false) : CSCD_OK;
+    return at->config->waiting.former != NULL ? take_uncovered(at, x, false) : CSCD_OK;
 }

@@ -527,5 +527,5 @@ void part_sums_free(cscd_context *context, part_summer *s);
 /* Sums up what was found. same: the copies among the bodies; NULL: nobody has asked for them. *out lives until the next call.
  * OUT_OF_MEMORY has no sentence, and may mean that the sums do not fit the budget. */
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
-                          const cscd_intersections *found, const same_solids *same,
-                          memory_budget *budget, cscd_part_pairs *out);
+                          const cscd_intersections *found, const same_solids *same, memory_budget *budget,
+                          cscd_part_pairs *out);

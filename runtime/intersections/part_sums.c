@@ -228,8 +228,8 @@ static size_t count_faces(const summing *w) {
 }
 
 cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
-                          const cscd_intersections *found, const same_solids *same,
-                          memory_budget *budget, cscd_part_pairs *out) {
+                          const cscd_intersections *found, const same_solids *same, memory_budget *budget,
+                          cscd_part_pairs *out) {
     summing w = {.sums = s, .mesh = mesh, .labels = labels, .found = found, .same = same, .budget = budget};
     cscd_status status = list_keys(&w);
     if (status != CSCD_OK) return status;

@@ -1,7 +1,6 @@
 /* How far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
 #include "runtime/solver/free_step.h"
 
-#include "runtime/solver/stored_scalar.h"
 #include "src/core/vec3.h"
 
 #include <math.h>
@@ -108,16 +107,15 @@ double motion_rounding(const straight_motion *m) {
 
 /* A motion, its test, and the outcome of the last test. */
 typedef struct trial {
+    const step_quest *quest;
     const straight_motion *of;
-    motion_test *test;
-    void *data;
     bool touches;
     cscd_contact first; /* if it touches */
 } trial;
 
 static cscd_status try_between(trial *t, const double *from, const double *to) {
     cscd_contacts found;
-    cscd_status status = t->test(t->data, from, to, &found);
+    cscd_status status = t->quest->test(t->quest->of, from, to, &found);
     if (status != CSCD_OK) return status;
     t->touches = found.count > 0;
     if (t->touches) t->first = found.items[0];
@@ -141,24 +139,24 @@ static const char *name_of_second(const cscd_contact *at) {
     }
 }
 
-static cscd_status fail_in_contact(cscd_detector *d, const cscd_contact *at) {
+static cscd_status fail_in_contact(cscd_context *context, const cscd_contact *at) {
     return context_fail(
-        d->context, CSCD_IN_CONTACT,
+        context, CSCD_IN_CONTACT,
         "%s %u and %s %u touch at the start, so no step is free of contact: part them, or leave the "
         "pair out",
         name_of_first(at), at->a, name_of_second(at), at->b);
 }
 
 /* Tests an interval in which nothing moves. IN_CONTACT: something touches, which is t->first. */
-static cscd_status check_start(cscd_detector *d, trial *t) {
+static cscd_status check_start(trial *t) {
     cscd_status status = try_between(t, t->of->x0, t->of->x0);
     if (status != CSCD_OK || !t->touches) return status;
-    return fail_in_contact(d, &t->first);
+    return fail_in_contact(t->quest->context, &t->first);
 }
 
 /* Returns the share of a step that is tried next, after a contact was found at this time of the step. */
-static double cut_for(const cscd_detector *d, double time) {
-    return d->options.step_factor * (time > 0.0 ? time : about_0);
+static double cut_for(const step_quest *quest, double time) {
+    return quest->step_factor * (time > 0.0 ? time : about_0);
 }
 
 static bool is_moved(const straight_motion *m, const double *reached) {
@@ -169,9 +167,9 @@ static bool is_moved(const straight_motion *m, const double *reached) {
 }
 
 /* x0 is given in doubles, is rounded to floats, and cannot get there. */
-static cscd_status fail_to_round(cscd_detector *d, const cscd_contact *at) {
+static cscd_status fail_to_round(cscd_context *context, const cscd_contact *at) {
     return context_fail(
-        d->context, CSCD_IN_CONTACT,
+        context, CSCD_IN_CONTACT,
         "%s %u and %s %u do not stay apart where x0 is rounded to floats: give x0 in floats, or ask "
         "for doubles",
         name_of_first(at), at->a, name_of_second(at), at->b);
@@ -179,45 +177,45 @@ static cscd_status fail_to_round(cscd_detector *d, const cscd_contact *at) {
 
 /* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own,
  * or the time is 0, steps shrink ever faster. */
-static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, double *fraction) {
+static cscd_status shorten_step(trial *t, double *reached, double *fraction) {
     cscd_status status = CSCD_OK;
     bool start_checked = false;
     for (double shrink = 0.25;; shrink *= shrink) {
         bool at_once = t->first.toi == 0.0;
-        if (at_once && !start_checked) status = check_start(d, t);
+        if (at_once && !start_checked) status = check_start(t);
         if (status != CSCD_OK) return status;
         start_checked |= at_once;
         motion_at(t->of, *fraction, reached);
         status = try_between(t, t->of->x0, reached);
         if (status != CSCD_OK || !t->touches) return status;
         if (*fraction == shortest && (start_checked || t->first.toi > 0.0))
-            return fail_to_round(d, &t->first);
-        *fraction = max_of(*fraction * min_of(cut_for(d, t->first.toi), shrink), shortest);
+            return fail_to_round(t->quest->context, &t->first);
+        *fraction = max_of(*fraction * min_of(cut_for(t->quest, t->first.toi), shrink), shortest);
     }
 }
 
-static cscd_status find_step(cscd_detector *d, trial *t, double longest, double *reached,
-                             cscd_free_step *step) {
+static cscd_status find_step(trial *t, double *reached, cscd_free_step *step) {
+    const double longest = t->quest->longest;
     motion_at(t->of, longest, reached);
     cscd_status status = try_between(t, t->of->x0, reached);
     if (status != CSCD_OK || !t->touches) return status;
     step->limited = true;
     step->limit = t->first;
     step->limit.toi *= longest;
-    double cut = longest * cut_for(d, 0.0);
+    double cut = longest * cut_for(t->quest, 0.0);
     if (t->first.toi > 0.0)
-        cut = d->options.step_factor * step->limit.toi; /* rounding must not make it larger */
+        cut = t->quest->step_factor * step->limit.toi; /* rounding must not make it larger */
     step->fraction = max_of(cut, shortest);
-    status = shorten_step(d, t, reached, &step->fraction);
+    status = shorten_step(t, reached, &step->fraction);
     if (status == CSCD_IN_CONTACT) *step = (cscd_free_step){.limited = true, .limit = t->first};
     return status;
 }
 
-cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double longest, motion_test *test,
-                           void *of, double *reached, cscd_free_step *out) {
-    cscd_free_step found = {.fraction = longest};
-    trial t = {.of = m, .test = test, .data = of};
-    cscd_status status = find_step(d, &t, longest, reached, &found);
+cscd_status free_step_find(const step_quest *quest, const straight_motion *m, double *reached,
+                           cscd_free_step *out) {
+    cscd_free_step found = {.fraction = quest->longest};
+    trial t = {.quest = quest, .of = m};
+    cscd_status status = find_step(&t, reached, &found);
     if (status == CSCD_OK) found.moved = is_moved(m, reached);
     if (status == CSCD_OK && !found.moved) memcpy(reached, m->x0, coordinates_of(m) * sizeof *reached);
     if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = found;

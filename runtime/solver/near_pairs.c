@@ -1,72 +1,134 @@
-/* The pairs that displacement bounds and truncation look at: those near each other where a motion starts. */
+/* Pairs that are near each other where a motion starts: what they must keep, the planes that divide the space between them, and
+ * how far each vertex may go towards these. */
 #include "runtime/solver/near_pairs.h"
 
 #include "runtime/ccd/ccd.h"
-#include "src/core/floating.h"
+#include "src/core/vec3.h"
 
 #include <string.h>
 
-/* Pairs are looked for so much farther away than they need to, which covers the rounding of the sum, too. */
-static const double farther = 1.0 + 0x1p-17;
-
-static double greatest_separation(const cscd_detector *d) {
-    return max_of(d->limit.distance, d->pair_rules.greatest);
-}
-
-double near_pair_separation(const cscd_detector *d, const cscd_proximity *pair) {
-    const swept_interval rules = {.mesh = d->mesh,
-                                  .filter = {d->mesh, &d->pair_rules, NULL, NULL},
-                                  .limit = d->limit,
-                                  .thick = detector_thick(d)};
+double near_pair_separation(const near_rules *r, const cscd_proximity *pair) {
+    const swept_interval rules = {.mesh = r->mesh,
+                                  .filter = {r->mesh, &r->config->pair_rules, NULL, NULL},
+                                  .limit = r->config->limit,
+                                  .thick = config_is_thick(r->config)};
     return pair_separation(&rules, pair->kind, pair->a, pair->b).distance;
 }
 
-double near_pair_gap(const cscd_detector *d, const cscd_proximity *pair, const double points[4][3]) {
-    double apart = near_pair_separation(d, pair);
-    if (pair->kind == CSCD_CONTACT_VH) return half_space_gap(points, d->mesh->loose.normals[pair->b], apart);
+double near_pair_gap(const near_rules *r, const cscd_proximity *pair, const double points[4][3]) {
+    double apart = near_pair_separation(r, pair);
+    if (pair->kind == CSCD_CONTACT_VH) return half_space_gap(points, r->mesh->loose.normals[pair->b], apart);
     return pair_gap(stencil_points(pair->kind), points, apart);
-}
-
-static double search_distance(const cscd_detector *d, double search_radius) {
-    return (search_radius + greatest_separation(d)) * farther;
-}
-
-cscd_status near_pairs_check_radius(const cscd_detector *d, double search_radius) {
-    if (is_positive_length(search_radius) && is_positive_length(search_distance(d, search_radius)))
-        return CSCD_OK;
-    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                        "search_radius is %g, expected a length from 2^-300 to 2^300, also with "
-                        "min_separation added to it",
-                        search_radius);
-}
-
-/* Points that have no distance to keep from a wire, or from each other, may go where they want. */
-static size_t keep_counting(const cscd_detector *d, cscd_proximity *items, size_t count) {
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        bool of_points = items[i].kind == CSCD_CONTACT_VV || items[i].kind == CSCD_CONTACT_EV;
-        if (!of_points || near_pair_separation(d, &items[i]) > 0.0) items[kept++] = items[i];
-    }
-    return kept;
-}
-
-cscd_status near_pairs_find(cscd_detector *d, const double *x, double search_radius, cscd_proximities *out) {
-    cscd_status status = proximity_find(d, x, search_distance(d, search_radius), CSCD_NEAR_PAIRS, out);
-    if (status == CSCD_OK && d->mesh->loose.point_count > 0)
-        out->count = keep_counting(d, d->proximities.items, out->count);
-    return status;
-}
-
-void *near_pairs_scratch(cscd_detector *d, size_t count, size_t size) {
-    if (d->pair_scratch != NULL && count <= d->pair_scratch_size / size) return d->pair_scratch;
-    void *grown = context_allocate(d->context, count + count / 2 + 1, size);
-    if (grown == NULL) return NULL;
-    context_free(d->context, d->pair_scratch);
-    d->pair_scratch = grown;
-    d->pair_scratch_size = (count + count / 2 + 1) * size;
-    return grown;
 }
 
 void near_pair_load(const double *x, const cscd_stencil *stencil, double points[4][3]) {
     for (int i = 0; i < 4; i++) memcpy(points[i], x + (size_t)stencil->vertices[i] * 3, sizeof points[i]);
+}
+
+/* ---- planes -------------------------------------------------------------------------------------------- */
+
+/* What is given to the two sides of a plane together (lemma 4). */
+static const double planes_share = 1.0 - 0x1p-20;
+
+/* What an obstacle needs, so that rounding does not stop it just before its end. */
+static const double rounded_up = 1.0 + 0x1p-40;
+
+typedef struct division_work {
+    const near_rules *rules;
+    const division_quest *quest;
+    division_plane *planes;
+} division_work;
+
+/* How far the two sides want to go beyond where they are, and may go for all other pairs. */
+typedef struct approach {
+    double a, b;
+} approach;
+
+static double height_above_side(const pair_plane *plane, const division_plane *out, int i) {
+    return division_sign(out, i) < 0.0 ? plane->height[i] - plane->low_a : plane->high_b - plane->height[i];
+}
+
+static approach approach_of(const division_work *w, const pair_plane *plane, const division_plane *out) {
+    approach wanted = {0.0, 0.0};
+    for (int i = 0; i < 4; i++) {
+        const double *x0 = w->quest->x0 + (size_t)out->vertices[i] * 3,
+                     *x1 = w->quest->x1 + (size_t)out->vertices[i] * 3;
+        double motion[3], sign = division_sign(out, i);
+        vec3_subtract(x1, x0, motion);
+        double length = sqrt(vec3_dot(motion, motion)),
+               share = length > w->quest->farthest ? w->quest->farthest / length : 1.0;
+        double towards = sign * share * vec3_dot(plane->normal, motion) - height_above_side(plane, out, i);
+        double *side = sign < 0.0 ? &wanted.a : &wanted.b;
+        *side = max_of(*side, towards);
+    }
+    return wanted;
+}
+
+static bool vertex_of_obstacle(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->objects[cscd_mesh_vertex_object(mesh, vertex)].obstacle;
+}
+
+/* Returns what a gets of a room that both sides share. */
+static double share_of_a(const cscd_mesh *mesh, const division_plane *plane, const approach *wanted,
+                         double room) {
+    double sum = wanted->a + wanted->b;
+    if (sum <= room) return wanted->a + 0.5 * (room - sum);
+    if (vertex_of_obstacle(mesh, plane->vertices[0])) return min_of(wanted->a * rounded_up, room);
+    if (vertex_of_obstacle(mesh, plane->vertices[3])) return room - min_of(wanted->b * rounded_up, room);
+    return room * (wanted->a / sum);
+}
+
+/* Finds the plane between the features of a pair. Returns how long its normal is, at the most. */
+static double find_plane(const cscd_mesh *mesh, const cscd_proximity *pair, const double points[4][3],
+                         pair_plane *out) {
+    if (pair->kind == CSCD_CONTACT_VH) return half_space_plane(points, mesh->loose.normals[pair->b], out);
+    pair_plane_find(stencil_points(pair->kind), points, out);
+    return 1.0;
+}
+
+/* The vertices of a pair without a plane stay where they are. A pair within its separation has a plane and no room, so
+ * that its sides may part. */
+static void divide_pair(const division_work *w, const cscd_proximity *pair, division_plane *out) {
+    const cscd_mesh *mesh = w->rules->mesh;
+    cscd_stencil stencil = near_pair_stencil(mesh, pair);
+    double points[4][3];
+    pair_plane plane;
+    near_pair_load(w->quest->x0, &stencil, points);
+    double length = find_plane(mesh, pair, (const double(*)[3])points, &plane);
+    *out = (division_plane){.kind = pair->kind, .room = {-1.0, -1.0, -1.0, -1.0}};
+    memcpy(out->vertices, stencil.vertices, sizeof out->vertices);
+    if (!(plane.gap > 0.0)) return;
+    double room = max_of(plane.gap - near_pair_separation(w->rules, pair) * length, 0.0) * planes_share;
+    approach wanted = approach_of(w, &plane, out);
+    double for_a = share_of_a(mesh, out, &wanted, room), for_b = max_of(room - for_a, 0.0);
+    memcpy(out->normal, plane.normal, sizeof out->normal);
+    for (int i = 0; i < 4; i++)
+        out->room[i] = (division_sign(out, i) < 0.0 ? for_a : for_b) + height_above_side(&plane, out, i);
+}
+
+static void divide_share(void *data, uint32_t index) {
+    const division_work *w = data;
+    size_t begin = (size_t)index * NEAR_PAIRS_PER_SHARE, end = begin + NEAR_PAIRS_PER_SHARE;
+    for (size_t i = begin; i < end && i < w->quest->near->count; i++)
+        divide_pair(w, &w->quest->near->items[i], &w->planes[i]);
+}
+
+/* Lists the limits of each vertex in the order of the pairs. */
+static void link_limits(division_planes *p, uint32_t vertex_count) {
+    for (uint32_t v = 0; v < vertex_count; v++) p->first[v] = DIVISION_NONE;
+    for (size_t i = p->count; i-- > 0;) {
+        division_plane *plane = &p->planes[i];
+        for (int j = 4; j-- > 0;) {
+            plane->next[j] = p->first[plane->vertices[j]];
+            p->first[plane->vertices[j]] = 4 * i + (size_t)j;
+        }
+    }
+}
+
+void division_planes_find(const near_rules *rules, const division_quest *quest, division_planes *out) {
+    division_work work = {rules, quest, out->planes};
+    out->count = quest->near->count;
+    uint32_t shares = (uint32_t)((out->count + NEAR_PAIRS_PER_SHARE - 1) / NEAR_PAIRS_PER_SHARE);
+    parallel_run(rules->mesh->context->threads, shares, divide_share, &work);
+    link_limits(out, rules->mesh->vertex_count);
 }

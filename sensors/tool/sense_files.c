@@ -160,7 +160,8 @@ static void write_provenance(json *out, const sense_subject *s) {
     const sense_options *o = s->options;
     json_break_line(out);
     json_begin_object(out, "provenance");
-    provenance_write(out, o->argument_count, o->arguments, cscd_context_describe(s->recording->context).thread_count);
+    provenance_write(out, o->argument_count, o->arguments,
+                     cscd_context_describe(s->recording->context).thread_count);
     json_begin_array(out, "inputs");
     provenance_write_input(out, o->source.model_path, recorded_object_hash_model(&s->recording->objects[0]));
     provenance_write_input(out, o->source.frame_paths[0], s->recording->objects[0].frames_hash);

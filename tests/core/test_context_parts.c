@@ -23,7 +23,8 @@ TEST(what_is_given_back_counts_no_more) {
     assert_true(cscd_context_describe(context).bytes >= before + 803);
     uint8_t *grown = context_grow(context, one, 100, 200, 8);
     assert_non_null(grown);
-    assert_true(cscd_context_describe(context).bytes >= before + 1603 && cscd_context_describe(context).bytes < before + 2403);
+    assert_true(cscd_context_describe(context).bytes >= before + 1603 &&
+                cscd_context_describe(context).bytes < before + 2403);
     context_free(context, other);
     context_free(context, grown);
     assert_int_equal(cscd_context_describe(context).bytes, before);

@@ -45,8 +45,8 @@ static cscd_detector *make_detector(const rig *r, cscd_method method, cscd_mode 
 
 /* Makes each component cull, or not, in the next interval. */
 static void choose_at_random(cscd_detector *d, random_stream *random) {
-    for (uint32_t c = 0; d->starts.adapts && c < d->mesh->component_count; c++) {
-        component_start *start = &d->starts.of[c];
+    for (uint32_t c = 0; d->known.starts.adapts && c < d->mesh->component_count; c++) {
+        component_start *start = &d->known.starts.of[c];
         start->culls = stream_below(random, 2) == 0;
         start->regret = 0.0;
     }
@@ -150,7 +150,7 @@ TEST(culling_follows_the_motion) {
         uint32_t until = 0;
         while (step_culls(d, path[0], path[1])) assert_true(++until < 10);
         for (int i = 0; i < 20; i++) assert_false(step_culls(d, path[0], path[1]));
-        const double *at = d->starts.positions;
+        const double *at = d->known.starts.positions;
         uint32_t tries = 0;
         for (;; tries++) { /* on the spot */
             memcpy(s.x1, at, coordinate_count() * sizeof(double));
@@ -198,8 +198,9 @@ TEST(counters_do_not_depend_on_threads) {
                 counters[i] = cscd_detector_counters(detectors[i]);
                 assert_memory_equal(&counters[i], &counters[0], sizeof counters[0]);
                 for (uint32_t c = 0; c < detectors[i]->mesh->component_count; c++)
-                    assert_true(detectors[i]->starts.of[c].kept == detectors[0]->starts.of[c].kept &&
-                                detectors[i]->starts.of[c].regret == detectors[0]->starts.of[c].regret);
+                    assert_true(
+                        detectors[i]->known.starts.of[c].kept == detectors[0]->known.starts.of[c].kept &&
+                        detectors[i]->known.starts.of[c].regret == detectors[0]->known.starts.of[c].regret);
             }
         }
         for (int i = 0; i < 3; i++) {

@@ -39,8 +39,8 @@ static uint32_t count_cut_off(const cscd_detector *d, const int *numbers) {
     uint32_t found = 0;
     for (uint32_t t = 0; t < d->mesh->triangle_count; t++) {
         int number;
-        if (d->starts.triangles[t] != TRIANGLE_FREE) continue;
-        bool decided = exact_number_outside(d->mesh, d->starts.positions, t, &number);
+        if (d->known.starts.triangles[t] != TRIANGLE_FREE) continue;
+        bool decided = exact_number_outside(d->mesh, d->known.starts.positions, t, &number);
         found += decided && number != numbers[d->mesh->triangle_components[t]];
     }
     return found;
@@ -51,9 +51,10 @@ static void check_moment(const cscd_detector *d, const char *where, chain_tally 
     int numbers[SCENE_TRIANGLES_MAX] = {0};
     sum->clean += expect_one_number_everywhere(d, false, where);
     for (uint32_t t = 0; t < d->mesh->triangle_count; t++) {
-        sum->crossing += d->starts.triangles[t] == TRIANGLE_CROSSING;
-        if (d->starts.triangles[t] == TRIANGLE_CLEAN)
-            exact_number_outside(d->mesh, d->starts.positions, t, &numbers[d->mesh->triangle_components[t]]);
+        sum->crossing += d->known.starts.triangles[t] == TRIANGLE_CROSSING;
+        if (d->known.starts.triangles[t] == TRIANGLE_CLEAN)
+            exact_number_outside(d->mesh, d->known.starts.positions, t,
+                                 &numbers[d->mesh->triangle_components[t]]);
     }
     sum->cut_off += count_cut_off(d, numbers);
 }
@@ -76,7 +77,7 @@ static void make_rigs(rig *plain, rig *culled) {
     *plain = rig_create(&motion, 1, &options);
     options.method = CSCD_METHOD_SINGLE;
     *culled = rig_create(&motion, 1, &options);
-    culled->detector->starts.share_worth_it = 0.0;
+    culled->detector->known.starts.share_worth_it = 0.0;
 }
 
 /* Each start is checked. */

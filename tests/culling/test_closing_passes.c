@@ -120,7 +120,8 @@ static void check_passes(uint64_t expected) {
     options.method = CSCD_METHOD_SINGLE;
     oracle_find(&ring, &truth);
     rig r = rig_create(&ring, 1, &options);
-    r.detector->culling.detector_offsets[0][2] = -2000.0; /* the detector point, from the body's middle */
+    r.detector->interval.culling.detector_offsets[0][2] =
+        -2000.0; /* the detector point, from the body's middle */
     cscd_contacts found = rig_step(&r, &ring);
     cscd_counters counters = cscd_detector_counters(r.detector);
     assert_int_equal(counters.clean, ring.triangle_count);

@@ -297,7 +297,7 @@ TEST(contact_and_recovery) {
     memcpy(open, s.x0, sizeof open);
     memcpy(crossing, s.x1, sizeof crossing);
     chain c = start_chain(CSCD_START_PROVE);
-    c.detector->starts.share_worth_it = 0.5;
+    c.detector->known.starts.share_worth_it = 0.5;
     step_trap(&c, open, crossing, CSCD_REASON_FINISHED);
     step_trap(&c, crossing, crossing,
               CSCD_REASON_CROSSING); /* most triangles stay clean, and the rest are culled too */

@@ -87,7 +87,7 @@ static cscd_detector *culling_detector(const ways *w, int way) {
     if (way == ALL_PLANNED) plan = w->planned;
     if (plan == NULL) options.method = CSCD_METHOD_SINGLE;
     assert_int_equal(detector_create_here(w->mesh, plan, &options, &detector), CSCD_OK);
-    if (way != ALL_SINGLE) detector->starts.share_worth_it = 0.0; /* however few triangles are clean */
+    if (way != ALL_SINGLE) detector->known.starts.share_worth_it = 0.0; /* however few triangles are clean */
     return detector;
 }
 
@@ -190,7 +190,7 @@ static bool all_adjacent(const cscd_mesh *m, star a, star b) {
 
 static void count_pair(const cscd_detector *d, gap_motion m, long double rounding, point_set a, star of_a,
                        point_set b, star of_b, test_range *range) {
-    if (!any_kept(&d->culling, of_a.triangles, of_a.count, of_b.triangles, of_b.count)) return;
+    if (!any_kept(&d->interval.culling, of_a.triangles, of_a.count, of_b.triangles, of_b.count)) return;
     long double gap = direction_gap(m, a, b, rounding);
     bool near =
         gap <= rounding || (axis_gap(m, a, b, rounding) <= rounding && all_adjacent(d->mesh, of_a, of_b));
@@ -269,7 +269,7 @@ static void check_clean(const cscd_detector *d, const double *x, uint64_t *windi
     for (int c = 0; c < 8; c++) common[c] = NAN;
     for (uint32_t t = 0; t < m->triangle_count; t++) {
         uint32_t component = m->triangle_components[t];
-        if (d->starts.triangles[t] < TRIANGLE_FREE) continue;
+        if (d->known.starts.triangles[t] < TRIANGLE_FREE) continue;
         const uint32_t *corners = m->triangles[t];
         assert_false(
             collinear(x + (size_t)corners[0] * 3, x + (size_t)corners[1] * 3, x + (size_t)corners[2] * 3));
@@ -277,7 +277,7 @@ static void check_clean(const cscd_detector *d, const double *x, uint64_t *windi
             if (o != t && m->triangle_components[o] == component)
                 assert_false(triangles_intersect(corners, m->triangles[o], x));
         }
-        if (d->starts.triangles[t] < TRIANGLE_CLEAN) continue;
+        if (d->known.starts.triangles[t] < TRIANGLE_CLEAN) continue;
         double number = winding_number(m, x, t);
         if (fabs(number - round(number)) > 0.1) continue; /* another sheet is too near */
         if (isnan(common[component])) common[component] = round(number);

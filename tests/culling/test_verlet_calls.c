@@ -1,6 +1,6 @@
 /* Lists of pairs and calls that fail: whatever a cancelled call, or one without memory, was about to do, the call that is made
  * again does what it would have done at once. */
-#include "runtime/detector/verlet_list.h"
+#include "runtime/detector/detector.h"
 #include "src/core/context.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/culling/march.h"
@@ -121,11 +121,11 @@ TEST(a_list_that_was_replaced_has_ended) {
     for (int replaced = 0; replaced < 2; replaced++) {
         verlet_list v = {.now = {.exists = true, .revision = 7, .served = 5, .was_quiet = true}};
         verlet_list_begin_call(&v);
-        v.now = (verlet_state){.exists = true, .revision = 7, .waiting = 4};
+        v.now = (verlet_state){.exists = true, .revision = 7, .pause = 4};
         v.serving = true;
         v.remade = replaced != 0;
         verlet_list_undo(&v);
-        assert_true(v.now.exists && v.now.was_quiet && v.now.served == 5 && v.now.waiting == 0 && !v.serving);
+        assert_true(v.now.exists && v.now.was_quiet && v.now.served == 5 && v.now.pause == 0 && !v.serving);
         assert_int_equal(v.now.revision == 7, !replaced);
     }
 }

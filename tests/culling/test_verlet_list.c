@@ -135,7 +135,7 @@ static void compare_orientations(const marching *a) {
 
 /* What the list knows of the start of the next interval is what is true of the end of this one. */
 static void check_strays(marching *a) {
-    const bvh_skin *skin = &a->detectors[WITH_LISTS]->verlet.skin;
+    const bvh_skin *skin = &a->detectors[WITH_LISTS]->known.verlet.skin;
     for (uint32_t i = 0; i < skin->leaf_count; i++) {
         float sum = 0.0f;
         for (int k = 4; k < 7; k++) {

@@ -1,5 +1,6 @@
 /* Depths that would take too much work are left out before it is done, and nothing else is; the work can be cancelled. */
 #include "runtime/depths/deepest_points.h"
+#include "runtime/detector/detector.h"
 #include "runtime/detector/surface_answers.h"
 #include "tests/support/intersections/answer_lists.h"
 #include "tests/support/intersections/tangles.h"
@@ -92,7 +93,7 @@ TEST(the_host_is_asked_all_along) {
     rig.context->progress.host = (cscd_progress){count_report, &asked};
     rig.context->progress.interval_ms = 0.0;
     find_with(&rig, &options);
-    const depth_finder *d = rig.detector->answers->depth_finder;
+    const depth_finder *d = rig.detector->results.answers->depth_finder;
     const size_t groups = d->deepest.group_count, questions = d->question_count;
     assert_true(groups > 20 && questions > 16);
     assert_true(asked >= (questions + 15) / 16 + groups + (groups + 3) / 4);

@@ -40,9 +40,11 @@ typedef struct known_triangle {
 static known_triangle known[SCENE_TRIANGLES_MAX];
 
 static known_triangle knowledge_of(const cscd_detector *d, uint32_t t) {
-    known_triangle k = {
-        d->culling.triangle_regions[t], d->culling.triangle_weights[t], {0.0}, d->starts.triangles[t]};
-    memcpy(k.offset, d->culling.detector_offsets[k.region], sizeof k.offset);
+    known_triangle k = {d->interval.culling.triangle_regions[t],
+                        d->interval.culling.triangle_weights[t],
+                        {0.0},
+                        d->known.starts.triangles[t]};
+    memcpy(k.offset, d->interval.culling.detector_offsets[k.region], sizeof k.offset);
     return k;
 }
 
@@ -53,12 +55,12 @@ static void check_knowledge(const cscd_mesh_change *made, size_t *kept, size_t *
     const uint32_t *components = cscd_mesh_change_to_old(made, CSCD_COMPONENTS, NULL);
     static uint32_t sizes[SCENE_TRIANGLES_MAX]; /* of regions; none is left without a triangle */
     memset(sizes, 0, sizeof sizes);
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) sizes[d->culling.triangle_regions[t]]++;
-    for (uint32_t r = 0; r < d->culling.region_count; r++) assert_true(sizes[r] > 0);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) sizes[d->interval.culling.triangle_regions[t]]++;
+    for (uint32_t r = 0; r < d->interval.culling.region_count; r++) assert_true(sizes[r] > 0);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         known_triangle now = knowledge_of(d, t);
         uint32_t component = mesh->triangle_components[t];
-        assert_true(now.region < d->culling.region_count);
+        assert_true(now.region < d->interval.culling.region_count);
         if (components[component] == UINT32_MAX) {
             assert_int_equal(now.state, TRIANGLE_UNKNOWN);
             assert_true(now.weight == 1.0 / mesh->components[component].triangle_count);
@@ -126,14 +128,14 @@ TEST(keeps_rest_lengths) {
         expect_ok(set_rest_packed(moving.detector, moving_joined.x0));
         uint32_t old_edges = cscd_mesh_edge_count(moving_mesh_now());
         double *before = malloc(old_edges * sizeof *before);
-        memcpy(before, moving.detector->rest.squared_lengths, old_edges * sizeof *before);
+        memcpy(before, moving.detector->config.rest.squared_lengths, old_edges * sizeof *before);
         cscd_mesh_change *made = make_change(context);
         expect_ok(cscd_detector_change_mesh(moving.detector, made));
         uint32_t count;
         const uint32_t *origins = cscd_mesh_change_to_old(made, CSCD_EDGES, &count);
         for (uint32_t e = 0; e < count; e++) {
             double expected = origins[e] != UINT32_MAX ? before[origins[e]] : 0.0;
-            assert_true(moving.detector->rest.squared_lengths[e] == expected);
+            assert_true(moving.detector->config.rest.squared_lengths[e] == expected);
             kept += expected > 0.0;
             unknown += expected == 0.0;
         }

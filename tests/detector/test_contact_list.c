@@ -1,8 +1,6 @@
 /* The contacts of all lanes form one list, sorted by time and names, without those that the caller
  * ignores; long lists are moved, not copied, and are the same. */
-#include "runtime/detector/contact_list.h"
 #include "runtime/detector/detector.h"
-#include "runtime/detector/earliest_contacts.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -114,14 +112,14 @@ TEST(dropped_contacts_are_not_seen_any_more) {
         elementary_contact hit = {.toi = tois[i]};
         contact_lane_add(r.context, lane, CSCD_CONTACT_VF, r.mesh->triangles[0][0], 1, &hit, false);
     }
-    d->contacts_seen[0] = 0;
-    earliest_begin(d);
-    earliest_note(d);
-    d->contacts_seen[0] = 2;
-    earliest_drop_later(d, 0.05);
+    d->interval.contacts_seen[0] = 0;
+    earliest_begin(&d->interval);
+    earliest_note(&d->interval);
+    d->interval.contacts_seen[0] = 2;
+    earliest_drop_later(&d->interval, 0.05);
     assert_int_equal(lane->count, 2);
     assert_true(contact_lane_at(lane, 0)->toi == 0.1 && contact_lane_at(lane, 1)->toi == 0.14);
-    assert_int_equal(d->contacts_seen[0], 1);
+    assert_int_equal(d->interval.contacts_seen[0], 1);
     contact_lane_reset(lane);
     rig_destroy(&r);
 }

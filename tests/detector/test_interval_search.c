@@ -1,8 +1,6 @@
 /* The search by trees finds what brute force over all feature pairs finds, and needs the orphan pairs for
  * it. */
-#include "runtime/detector/contact_list.h"
 #include "runtime/detector/detector.h"
-#include "runtime/detector/interval_search.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -22,11 +20,11 @@ static cscd_status search_without_orphans(interval_search *search) {
 static size_t search_by(const rig *r, search_kind *kind, result_buffer *buffer, cscd_counters *counters) {
     cscd_detector *d = r->detector;
     cscd_contacts found;
-    interval_search search = interval_search_begin(&d->space, interval.x0, interval.x1, d->limit);
+    interval_search search = interval_search_begin(&d->space, interval.x0, interval.x1, d->config.limit);
     expect_ok(bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval.x0, interval.x1, uniform_growth(0.0),
                                uniform_growth(0.0)));
     expect_ok(kind(&search));
-    expect_ok(contact_list_collect(&d->space, &d->exclusions, buffer, &search.counters, &found));
+    expect_ok(contact_list_collect(&d->space, &d->config.exclusions, buffer, &search.counters, &found));
     *counters = search.counters;
     return found.count;
 }

@@ -54,7 +54,7 @@ static void pair_end(capped_pair *p) {
 /* beside: so much room have lanes beside their share. With little they are suspended often. */
 static void set_cap(capped_pair *p, size_t longest, size_t beside) {
     expect_ok(cscd_detector_set_longest_list(p->capped, longest));
-    p->capped->cap.beside = beside;
+    p->capped->interval.cap.beside = beside;
 }
 
 /* ---- each list ----------------------------------------------------------------------------------------- */
@@ -147,7 +147,7 @@ static void compare_call(capped_pair *p, call_kind kind, const double *x0, const
 }
 
 static void compare_states(const capped_pair *p) {
-    const start_states *a = &p->capped->starts, *b = &p->free->starts;
+    const start_states *a = &p->capped->known.starts, *b = &p->free->known.starts;
     assert_int_equal(a->known, b->known);
     assert_memory_equal(a->triangles, b->triangles, s.triangle_count);
 }

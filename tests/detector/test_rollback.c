@@ -1,6 +1,6 @@
 /* A failed call restores what it has changed, and a snapshot is taken only for calls that can be
  * cancelled. */
-#include "runtime/detector/rollback.h"
+#include "runtime/detector/detector.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* The validators of meshes, plans and detectors find every kind of planted fault, and none in what the
  * library has made. */
 #include "cscd/cscd.h"
-#include "runtime/detector/detector_validate.h"
+#include "runtime/detector/detector.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -130,29 +130,31 @@ TEST(faults_of_detectors) {
     cscd_detector *d = w.detector;
     PLANT(detector_validate, d, d->rebuild.mesh, w.mesh, "the parts of a detector are of different meshes");
     PLANT(detector_validate, d, d->seen->triangle_count, 5, "the mesh of a detector has changed");
-    PLANT(detector_validate, d, d->limit.distance, 1.0,
+    PLANT(detector_validate, d, d->config.limit.distance, 1.0,
           "the distance of a detector is not that of its options");
-    PLANT(detector_validate, d, d->culling.triangle_regions[4], d->culling.region_count,
+    PLANT(detector_validate, d, d->interval.culling.triangle_regions[4], d->interval.culling.region_count,
           "a triangle is in a region that there is not");
-    PLANT(detector_validate, d, d->culling.triangle_weights[4], -1.0,
+    PLANT(detector_validate, d, d->interval.culling.triangle_weights[4], -1.0,
           "a triangle has no weight in its region");
-    PLANT(detector_validate, d, d->culling.facing[4], 9, "a triangle has an unknown orientation");
-    PLANT(detector_validate, d, d->culling.detector_offsets[0][1], (double)INFINITY,
+    PLANT(detector_validate, d, d->interval.culling.facing[4], 9, "a triangle has an unknown orientation");
+    PLANT(detector_validate, d, d->interval.culling.detector_offsets[0][1], (double)INFINITY,
           "a detector point is nowhere");
-    PLANT(detector_validate, d, d->culled[1], true, "the pairs of an obstacle are culled");
-    PLANT(detector_validate, d, d->starts.triangles[3], 9, "a triangle has an unknown state at its start");
-    PLANT(detector_validate, d, d->starts.of[0].clean, (d->starts.counted = true, UINT32_MAX),
+    PLANT(detector_validate, d, d->interval.culled[1], true, "the pairs of an obstacle are culled");
+    PLANT(detector_validate, d, d->known.starts.triangles[3], 9,
+          "a triangle has an unknown state at its start");
+    PLANT(detector_validate, d, d->known.starts.of[0].clean, (d->known.starts.counted = true, UINT32_MAX),
           "a component has more states than triangles at its start");
-    PLANT(detector_validate, d, d->exclusions.ignored[1], d->exclusions.ignored[0] - 1,
+    PLANT(detector_validate, d, d->config.exclusions.ignored[1], d->config.exclusions.ignored[0] - 1,
           "the pairs to leave out are not sorted");
-    PLANT(detector_validate, d, d->exclusions.ignored[1], (uint64_t)7 << 32 | 3,
+    PLANT(detector_validate, d, d->config.exclusions.ignored[1], (uint64_t)7 << 32 | 3,
           "a pair to leave out names no two triangles");
-    PLANT(detector_validate, d, d->exclusions.names[2], 1, "the seams do not name their vertices");
+    PLANT(detector_validate, d, d->config.exclusions.names[2], 1, "the seams do not name their vertices");
     PLANT(detector_validate, d, d->space.rules, NULL, "the parts of a detector have different rules");
-    PLANT(detector_validate, d, d->pair_rules.object_count, 1, "the rules are of another number of objects");
-    PLANT(detector_validate, d, d->pair_rules.reaches[0], 1.0,
+    PLANT(detector_validate, d, d->config.pair_rules.object_count, 1,
+          "the rules are of another number of objects");
+    PLANT(detector_validate, d, d->config.pair_rules.reaches[0], 1.0,
           "an object's distance is not within the greatest");
-    PLANT(detector_validate, d, d->pair_rules.component_objects[0], 2,
+    PLANT(detector_validate, d, d->config.pair_rules.component_objects[0], 2,
           "a component is of an object that there is not");
     PLANT(detector_validate, d, d->space.bvh.leaf_flags[0].used, 0xfd, "the lanes of a leaf are no prefix");
     whole_set_destroy(&w);

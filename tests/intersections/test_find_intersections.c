@@ -25,7 +25,7 @@ static rig rig_up(uint32_t threads, cscd_method method) {
 }
 
 static cscd_intersections find_pairs(const rig *r, cscd_intersection_answer answer, uint64_t kinds,
-                                          size_t stop_after) {
+                                     size_t stop_after) {
     cscd_intersection_options options = cscd_intersection_defaults();
     cscd_intersections found;
     options.answer = answer;
@@ -37,8 +37,7 @@ static cscd_intersections find_pairs(const rig *r, cscd_intersection_answer answ
 
 /* ---- one answer ---------------------------------------------------------------------------------------- */
 
-static void expect_pair(const rig *r, const cscd_intersection *is,
-                        const cscd_intersection *wanted) {
+static void expect_pair(const rig *r, const cscd_intersection *is, const cscd_intersection *wanted) {
     assert_int_equal(is->a, wanted->a);
     assert_int_equal(is->b, wanted->b);
     assert_int_equal(is->kind, wanted->kind);
@@ -48,8 +47,7 @@ static void expect_pair(const rig *r, const cscd_intersection *is,
     assert_int_equal(is->components[1], cscd_mesh_triangle_component(r->mesh, is->b));
 }
 
-static void expect_counts(const cscd_intersections *found, const cscd_intersection *pairs,
-                          size_t count) {
+static void expect_counts(const cscd_intersections *found, const cscd_intersection *pairs, size_t count) {
     size_t of_kind[CSCD_INTERSECTION_TOUCHING + 1] = {0};
     for (size_t i = 0; i < count; i++) of_kind[pairs[i].kind]++;
     assert_int_equal(found->count, count);

@@ -22,7 +22,7 @@ TEST(caps_bound_lists) {
     for (size_t beside = 0; beside < 200; beside += 50) {
         cscd_intersections found = {.count = 0};
         expect_ok(cscd_detector_set_longest_list(r.detector, all - 1));
-        r.detector->cap.beside = beside;
+        r.detector->interval.cap.beside = beside;
         assert_int_equal(find_intersections_packed(r.detector, s.x0, NULL, &found), CSCD_LIST_TOO_LONG);
         assert_int_equal(found.count, all);
         assert_int_equal(found.crossing + found.touching, all);
@@ -36,7 +36,7 @@ TEST(caps_bound_lists) {
         assert_int_equal(find_intersections_packed(r.detector, s.x0, &options, &found), CSCD_LIST_TOO_LONG);
         assert_int_equal(found.count, all);
         expect_ok(cscd_detector_set_longest_list(r.detector, all));
-        r.detector->cap.beside = beside;
+        r.detector->interval.cap.beside = beside;
         found = find_kinds_of(&s, r.detector, CSCD_ANSWER_LIST, all + 1);
         assert_false(found.stopped);
         assert_int_equal(compare_with_each_pair(&s, &found), all);

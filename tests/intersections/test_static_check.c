@@ -118,8 +118,9 @@ TEST(cancelled_checks_say_so) {
     cscd_detector *d = r.detector;
     cscd_intersections found;
     assert_int_equal(check_packed(d, s.x0, &found), CSCD_OK);
-    assert_int_equal(static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s.x0), CSCD_OK);
+    assert_int_equal(static_check_all(&d->known.check, &d->space.traversal, &d->space.bvh, s.x0), CSCD_OK);
     cscd_context_cancel(r.context);
-    assert_int_equal(static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s.x0), CSCD_CANCELLED);
+    assert_int_equal(static_check_all(&d->known.check, &d->space.traversal, &d->space.bvh, s.x0),
+                     CSCD_CANCELLED);
     rig_destroy(&r);
 }

@@ -172,7 +172,8 @@ TEST(sizes_change_nothing) {
         if (make_plan(scenes[i], &plans[i]) != CSCD_OK)
             fail_msg("%s", cscd_context_detail(scenes[i]->context));
         assert_int_equal(cscd_plan_region_count(plans[i]), cscd_plan_region_count(plans[0]));
-        assert_int_equal(cscd_plan_describe(plans[i]).compared_count, cscd_plan_describe(plans[0]).compared_count);
+        assert_int_equal(cscd_plan_describe(plans[i]).compared_count,
+                         cscd_plan_describe(plans[0]).compared_count);
         for (uint32_t t = 0; t < cscd_mesh_triangle_count(scenes[0]->mesh); t++)
             assert_int_equal(cscd_plan_triangle_region(plans[i], t), cscd_plan_triangle_region(plans[0], t));
         for (uint32_t c = 0; c < cscd_plan_describe(plans[0]).compared_count; c++)

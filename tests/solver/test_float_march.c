@@ -1,6 +1,6 @@
 /* A solver that stores floats marches on: what it stores is what was certified, and it goes as far as in doubles. */
-#include "runtime/detector/step.h"
-#include "runtime/solver/max_step.h"
+#include "runtime/detector/detector.h"
+#include "runtime/solver/solver.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/refusal.h"

@@ -1,5 +1,5 @@
 /* Starts nearer than min_separation: pressed together they lose no more than a rung, torn apart they go on. */
-#include "runtime/solver/max_step.h"
+#include "runtime/solver/solver.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/rig.h"

@@ -2,7 +2,7 @@
  * detector's. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "runtime/solver/proximity.h"
+#include "runtime/solver/solver.h"
 #include "tests/support/methods.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"

@@ -1,7 +1,7 @@
 /* Proximity at one moment: the pairs are compared with brute force, their distances with long double. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "runtime/solver/proximity.h"
+#include "runtime/solver/solver.h"
 #include "tests/support/ccd/feature_distance.h"
 #include "tests/support/methods.h"
 #include "tests/support/oracle.h"

@@ -20,7 +20,8 @@ TEST(distances_that_cannot_be) {
     EXPECT_ARGUMENT(cscd_detector_set_separation(detector, -1.0, 0.0),
                     "min_separation is -1, expected 0 or a length");
     EXPECT_ARGUMENT(cscd_detector_check(detector, NULL, &(cscd_intersections){0}), "positions is NULL");
-    EXPECT_ARGUMENT(cscd_detector_check(detector, AT_START, NULL), "cscd_detector_find_intersections: out is NULL");
+    EXPECT_ARGUMENT(cscd_detector_check(detector, AT_START, NULL),
+                    "cscd_detector_find_intersections: out is NULL");
     EXPECT_ARGUMENT(cscd_detector_max_step(detector, AT_START, AT_END, NULL, NULL),
                     "cscd_detector_max_step: out is NULL");
 }

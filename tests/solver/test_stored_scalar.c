@@ -1,5 +1,5 @@
 /* Numbers are rounded to the scalar in which they are stored, in loops that a compiler turns into vectors, too. */
-#include "runtime/solver/stored_scalar.h"
+#include "runtime/solver/free_step.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,6 @@
 /* Truncated motions: what was apart stays apart on the way, by the exact tests of a step and by rational numbers. */
-#include "runtime/solver/division_planes.h"
+#include "runtime/solver/near_pairs.h"
+#include "runtime/solver/solver.h"
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/random.h"
@@ -187,14 +188,17 @@ TEST(planes_divide_near_pairs) {
         scene_make((scene_family)family, 1, &interval);
         rig r = rig_apart(&interval, 0.01, CSCD_METHOD_NONE, 1);
         cscd_proximities near;
-        division_planes planes;
-        expect_ok(near_pairs_find(r.detector, interval.x0, 0.25, &near));
-        expect_ok(division_planes_find(r.detector, interval.x0, interval.x1, 0.125, &near, first, &planes));
+        expect_ok(proximity_find(r.detector, interval.x0, 0.26, CSCD_NEAR_PAIRS, &near));
+        const near_rules rules = {r.mesh, &r.detector->config};
+        const division_quest quest = {interval.x0, interval.x1, 0.125, &near};
+        division_planes planes = {.planes = calloc(near.count + 1, sizeof *planes.planes), .first = first};
+        division_planes_find(&rules, &quest, &planes);
         for (size_t i = 0; i < planes.count; i++) {
             if (planes.planes[i].room[0] < 0.0) continue;
             check_plane(&planes.planes[i], 0.01);
             divided++;
         }
+        free(planes.planes);
         rig_destroy(&r);
     }
     assert_true(divided > 1000);

@@ -4,7 +4,7 @@
 #include "runtime/detector/detector.h"
 
 static inline triangle_state start_state_of(const cscd_detector *detector, uint32_t triangle) {
-    return (triangle_state)detector->starts.triangles[triangle];
+    return (triangle_state)detector->known.starts.triangles[triangle];
 }
 
 /* How many triangles of a component are in a state. */

@@ -388,8 +388,7 @@ static bool track_frame(answers *a, uint32_t frame, const cscd_intersections *fo
 
 /* ---- frames ---------------------------------------------------------------------------------------------- */
 
-bool answers_add_found(answers *a, uint32_t frame, cscd_intersections *found, double ms,
-                       io_error *error) {
+bool answers_add_found(answers *a, uint32_t frame, cscd_intersections *found, double ms, io_error *error) {
     if (!shown_depths_choose(&a->shown, found)) return io_fail(error, "out of memory");
     frame_answer *added = push_frame(a, frame, error);
     if (added == NULL) return false;

@@ -229,8 +229,7 @@ bool answers_find(const answers *a, cscd_detector *detector, const double *posit
 /* Adds what was found in a frame, which comes after those before, and how long that took. *found is the
  * detector's and ours from then on, until the next call: what is not looked at with each other is left
  * out. */
-bool answers_add_found(answers *a, uint32_t frame, cscd_intersections *found, double ms,
-                       io_error *error);
+bool answers_add_found(answers *a, uint32_t frame, cscd_intersections *found, double ms, io_error *error);
 
 /* Adds what of a frame that was added is inside out, as cscd_patches says; NULL: nothing is, or nobody
  * looked. */

@@ -49,8 +49,8 @@ bool check_output_open(const char *json_path, const char *csv_path, check_output
 typedef uint32_t number_of_triangle(const recording *r, uint32_t triangle);
 
 /* Pairs of numbers, of all pairs of triangles but duplicates. */
-static void write_numbers(json *out, const char *member, const recording *r,
-                          const cscd_intersections *found, number_of_triangle *number) {
+static void write_numbers(json *out, const char *member, const recording *r, const cscd_intersections *found,
+                          number_of_triangle *number) {
     json_begin_array(out, member);
     for (size_t i = 0; i < found->count; i++) {
         if (found->items[i].kind == CSCD_INTERSECTION_DUPLICATE) continue;
@@ -126,8 +126,7 @@ static void write_csv(FILE *file, const answers *a, const frame_answer *frame,
     }
 }
 
-bool check_output_add(check_output *out, const answers *a, const cscd_intersections *found,
-                      io_error *error) {
+bool check_output_add(check_output *out, const answers *a, const cscd_intersections *found, io_error *error) {
     const frame_answer *frame = &answers_frames(a)[answers_frame_count(a) - 1];
     if (out->json_path != NULL) {
         write_json(&out->out, a, frame, found);

@@ -40,8 +40,7 @@ bool check_output_open(const char *json_path, const char *csv_path, check_output
 
 /* Adds the frame that the answers have taken last. Triangles are numbered as in their model files; the
  * smaller comes first, because welding keeps the order. Duplicates are counted and not listed. */
-bool check_output_add(check_output *out, const answers *a, const cscd_intersections *found,
-                      io_error *error);
+bool check_output_add(check_output *out, const answers *a, const cscd_intersections *found, io_error *error);
 
 /* The answers are finished. */
 bool check_output_close(check_output *out, const answers *a, const length_unit *unit, io_error *error);

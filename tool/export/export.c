@@ -106,8 +106,8 @@ void exports_add_contacts(exports *e, const cscd_contacts *contacts) {
     if (e->run != NULL) export_values_add_contacts(&e->run->values, contacts);
 }
 
-bool exports_add_frame(exports *e, uint32_t frame, const double *positions,
-                       const cscd_intersections *found, io_error *error) {
+bool exports_add_frame(exports *e, uint32_t frame, const double *positions, const cscd_intersections *found,
+                       io_error *error) {
     export_run *run = e->run;
     if (run == NULL) return true;
     const int32_t number = run->recording->frame_numbers[frame];

@@ -33,8 +33,8 @@ bool exports_open(const export_request *request, recording *r, const part_names 
 void exports_add_contacts(exports *e, const cscd_contacts *contacts);
 
 /* Writes a frame, by its index from 0; frames ascend. positions: of the mesh. */
-bool exports_add_frame(exports *e, uint32_t frame, const double *positions,
-                       const cscd_intersections *found, io_error *error);
+bool exports_add_frame(exports *e, uint32_t frame, const double *positions, const cscd_intersections *found,
+                       io_error *error);
 
 /* Writes what names the frames, of which there may be fewer than planned, and frees everything. Without a
  * frame older files stay. A zeroed struct is fine. */

@@ -280,7 +280,8 @@ static void write_provenance(json *out, const replay_options *o, const recording
     if (o->reproducible)
         provenance_write_build(out);
     else
-        provenance_write(out, o->argument_count, o->arguments, cscd_context_describe(r->context).thread_count);
+        provenance_write(out, o->argument_count, o->arguments,
+                         cscd_context_describe(r->context).thread_count);
     json_begin_array(out, "inputs");
     for (uint32_t i = 0; i < r->object_count; i++) {
         const recorded_object *object = &r->objects[i];

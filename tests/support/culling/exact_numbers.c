@@ -183,7 +183,7 @@ static void check_component(number_check *c, uint32_t component, bool everywhere
 
 static uint32_t check_numbers(const cscd_detector *detector, bool everywhere, bool outer, const char *where) {
     const cscd_mesh *mesh = detector->mesh;
-    const start_states *starts = &detector->starts;
+    const start_states *starts = &detector->known.starts;
     if (!starts->known || starts->partly || starts->vouched) return 0;
     number_check c = {mesh,
                       starts,

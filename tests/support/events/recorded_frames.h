@@ -29,8 +29,7 @@ typedef struct recorded_frames {
 void recorded_frames_create(recorded_frames *r, const cscd_allocator *allocator, uint32_t frame_count);
 
 /* Copies what was found, and contacts of the interval before, to a frame that has nothing yet. found may be NULL. */
-void recorded_frames_copy(recorded_frame *to, const cscd_intersections *found,
-                          const cscd_contacts *contacts);
+void recorded_frames_copy(recorded_frame *to, const cscd_intersections *found, const cscd_contacts *contacts);
 
 /* Frees everything; of one that was not created, what was copied. */
 void recorded_frames_free(recorded_frames *r);

@@ -45,8 +45,7 @@ static void compare_parts(const cscd_part_pairs *a, const cscd_part_pairs *b) {
     assert_true(a->share == b->share);
 }
 
-void compare_surfaces(const cscd_mesh *mesh, const cscd_intersections *a,
-                      const cscd_intersections *b) {
+void compare_surfaces(const cscd_mesh *mesh, const cscd_intersections *a, const cscd_intersections *b) {
     compare_items(a->items, a->count, b->items, b->count, sizeof *a->items);
     assert_int_equal(a->zero_area_triangles, b->zero_area_triangles);
     if (b->curves != NULL) compare_curves(a->curves, b->curves);
@@ -56,8 +55,7 @@ void compare_surfaces(const cscd_mesh *mesh, const cscd_intersections *a,
     if (b->parts != NULL) compare_parts(a->parts, b->parts);
 }
 
-void compare_answers(const cscd_mesh *mesh, const cscd_intersections *a,
-                     const cscd_intersections *b) {
+void compare_answers(const cscd_mesh *mesh, const cscd_intersections *a, const cscd_intersections *b) {
     compare_surfaces(mesh, a, b);
     if (b->overlaps == NULL) return;
     assert_int_equal(a->overlaps->count, b->overlaps->count);

@@ -33,8 +33,8 @@ cscd_intersection_options intersection_options(cscd_intersection_answer answer, 
     return options;
 }
 
-cscd_intersections find_kinds_of(const scene *s, cscd_detector *detector,
-                                      cscd_intersection_answer answer, size_t stop_after) {
+cscd_intersections find_kinds_of(const scene *s, cscd_detector *detector, cscd_intersection_answer answer,
+                                 size_t stop_after) {
     cscd_intersection_options options = intersection_options(answer, UINT64_MAX, stop_after);
     cscd_intersections found;
     expect_ok(find_intersections_packed(detector, s->x0, &options, &found));

@@ -11,8 +11,8 @@ cscd_intersection_options intersection_options(cscd_intersection_answer answer, 
                                                size_t stop_after);
 
 /* Asks for all kinds; the call must succeed. */
-cscd_intersections find_kinds_of(const scene *s, cscd_detector *detector,
-                                      cscd_intersection_answer answer, size_t stop_after);
+cscd_intersections find_kinds_of(const scene *s, cscd_detector *detector, cscd_intersection_answer answer,
+                                 size_t stop_after);
 
 /* Compares a whole list with a test of each pair of triangles; returns how many there are. */
 size_t compare_with_each_pair(const scene *s, const cscd_intersections *found);

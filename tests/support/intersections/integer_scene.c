@@ -200,10 +200,10 @@ size_t integer_scene_pairs(const integer_scene *s, uint64_t kinds, cscd_intersec
             if (kind < 0 || (kinds >> kind & 1) == 0) continue;
             out[count++] =
                 (cscd_intersection){.a = a,
-                                         .b = b,
-                                         .kind = (cscd_intersection_kind)kind,
-                                         .shared = oracle_shared(s->triangles[a], s->triangles[b], s->names),
-                                         .objects = {a / PART_TRIANGLES, b / PART_TRIANGLES}};
+                                    .b = b,
+                                    .kind = (cscd_intersection_kind)kind,
+                                    .shared = oracle_shared(s->triangles[a], s->triangles[b], s->names),
+                                    .objects = {a / PART_TRIANGLES, b / PART_TRIANGLES}};
         }
     }
     return count;

@@ -191,8 +191,8 @@ static void check_free(const rig *reference, const free_step_call *call, double 
 }
 
 bool free_step_check(const rig *reference, const cscd_context *called, const free_step_call *call) {
-    double distance = reference->detector->options.min_separation;
-    double tolerance = reference->detector->options.tolerance;
+    double distance = reference->detector->config.options.min_separation;
+    double tolerance = reference->detector->config.options.tolerance;
     set_distance(reference, 0.0);
     bool refused = contacts_between(reference, call->x0, call->x0).count > 0;
     if (refused)

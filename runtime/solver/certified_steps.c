@@ -1,13 +1,158 @@
-/* A line search: the candidates of one motion serve every shorter step and every moment on it. */
-#include "runtime/detector/candidates.h"
-#include "runtime/detector/contact_list.h"
-#include "runtime/detector/waiting.h"
-#include "runtime/solver/free_step.h"
-#include "runtime/solver/proximity.h"
+/* Steps that are certified free of contact: of a detector, by the stages of a step, and many along the one motion of a line
+ * search, whose candidates serve every shorter step and every moment on it. */
+#include "runtime/solver/solver.h"
 #include "src/core/floating.h"
+#include "src/core/timer.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
+
+#include <string.h>
+
+/* ==== of a detector ======================================================================================== */
+
+/* The sums over all tries of a call. */
+typedef struct tries {
+    cscd_detector *detector;
+    cscd_timings timings;
+    cscd_counters counters;
+    bool any;
+    double done; /* estimated share of the call: each try takes half of what is left */
+} tries;
+
+static void add_timings(cscd_timings *sum, const cscd_timings *more) {
+    sum->update_ms += more->update_ms;
+    sum->orientation_ms += more->orientation_ms;
+    sum->contour_ms += more->contour_ms;
+    sum->traversal_ms += more->traversal_ms;
+    sum->contact_ms += more->contact_ms;
+    sum->proof_ms += more->proof_ms;
+}
+
+static void add_counters(cscd_counters *sum, const cscd_counters *more) {
+    sum->static_checks += more->static_checks;
+    sum->clean += more->clean;
+    sum->rebuilds += more->rebuilds;
+    sum->passes += more->passes;
+    sum->plus += more->plus;
+    sum->minus += more->minus;
+    sum->contours += more->contours;
+    sum->sealed += more->sealed;
+    sum->boxes_tested += more->boxes_tested;
+    sum->pcp += more->pcp;
+    sum->adjacent += more->adjacent;
+    sum->feature_pairs += more->feature_pairs;
+    sum->tests += more->tests;
+    sum->by_signs += more->by_signs;
+    sum->by_roots += more->by_roots;
+    sum->by_exact += more->by_exact;
+    sum->vf += more->vf;
+    sum->ee += more->ee;
+    sum->bounded += more->bounded;
+    sum->loose += more->loose;
+    sum->coherent += more->coherent;
+}
+
+_Static_assert(offsetof(cscd_counters, reserved) == 21 * sizeof(uint64_t), "add_counters adds every counter");
+
+/* Withdraws the previous try first, because the vertices did not go to its end. */
+static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
+    tries *t = of;
+    step_outcome found;
+    if (t->any) step_withdraw(t->detector);
+    t->any = true;
+    progress_part(&t->detector->context->progress, t->done, 0.5 + 0.5 * t->done);
+    t->done = 0.5 + 0.5 * t->done;
+    cscd_status status = step_find(t->detector, from, to, CSCD_MODE_EARLIEST, true, &found);
+    if (status != CSCD_OK) return status;
+    add_timings(&t->timings, &found.timings);
+    add_counters(&t->counters, &found.counters);
+    *out = found.contacts;
+    return CSCD_OK;
+}
+
+static cscd_status check_method(const cscd_detector *d) {
+    if (!d->config.traits->loses_contacts) return CSCD_OK;
+    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                        "cscd_detector_max_step: method %s loses contacts and certifies nothing",
+                        d->config.traits->name);
+}
+
+static cscd_status reserve_reached(cscd_detector *d) {
+    if (d->reached == NULL)
+        d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
+    return d->reached != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+/* Withdraws what a failed call has tried, and passes the status on. */
+static cscd_status fail_tries(const tries *t, cscd_status status) {
+    if (t->any) step_withdraw(t->detector);
+    return detector_fail_call(t->detector, status);
+}
+
+cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_step *out) {
+    double since = timer_now_ms();
+    tries t = {.detector = d, .timings = {.check_ms = d->results.timings.check_ms}};
+    cscd_status status = motion_check(d->context, m);
+    if (status == CSCD_OK) status = motion_check_still(d->context, m, &d->space.active);
+    if (status != CSCD_OK) return status;
+    detector_begin_call(d);
+    const waiting_place waiting = detector_waiting_place(d);
+    status = waiting_settle(&waiting, m->x0);
+    if (status == CSCD_OK) status = waiting_only_touching(&waiting, m->x0);
+    if (status == CSCD_OK) status = reserve_reached(d);
+    const step_quest quest = {d->context, d->config.options.step_factor, 1.0, try_motion, &t};
+    if (status == CSCD_OK) status = free_step_find(&quest, m, d->reached, out);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
+    if (status != CSCD_OK) return fail_tries(&t, status);
+    step_take(d, d->reached);
+    timer_lap(&since, &t.timings.total_ms);
+    d->results.timings = t.timings;
+    d->results.counters = t.counters;
+    return CSCD_OK;
+}
+
+static cscd_status max_step_between(cscd_detector *d, const double *x0, const double *x1,
+                                    cscd_free_step *out) {
+    double since = timer_now_ms(), check_ms = 0.0;
+    cscd_status status = step_check_positions(d, x0, x1);
+    if (status != CSCD_OK) return status;
+    straight_motion m = {d->mesh, x0, x1, d->reached_scalars};
+    timer_lap(&since, &check_ms);
+    status = max_step_find(d, &m, out);
+    if (status == CSCD_OK) d->results.timings.total_ms += check_ms;
+    return status;
+}
+
+static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                     const cscd_mutable_view *reached, cscd_free_step *out) {
+    cscd_context *context = detector->context;
+    const cscd_mesh *mesh = detector->mesh;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
+    const double *from = NULL, *to = NULL;
+    cscd_free_step step;
+    cscd_status status = check_method(detector);
+    if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &from);
+    if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &to);
+    if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
+    if (status == CSCD_OK && reached == NULL) views_scalars(mesh, x0, detector->reached_scalars);
+    if (status == CSCD_OK && reached != NULL) views_mutable_scalars(mesh, reached, detector->reached_scalars);
+    if (status == CSCD_OK) status = max_step_between(detector, from, to, &step);
+    if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
+    if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = step;
+    return status;
+}
+
+cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                   const cscd_mutable_view *reached, cscd_free_step *out) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(&entry, max_step_of_views(detector, x0, x1, reached, out));
+}
+
+/* ==== of a line search ===================================================================================== */
 
 struct cscd_line_search {
     reference_count references; /* the caller alone */
@@ -27,6 +172,7 @@ struct cscd_line_search {
     bool states_known, vouched; /* as in start_states */
 };
 
+/* The motion of the line. */
 static straight_motion motion_of(const cscd_line_search *line) {
     return (straight_motion){line->detector->mesh, line->x0, line->x1, line->scalars};
 }
@@ -107,8 +253,8 @@ void cscd_line_search_destroy(cscd_line_search *line) {
 /* Remembers what the detector knows of the triangles at x0, because it will hold where a step of the
  * line ends. */
 static void remember_states(cscd_line_search *line) {
-    start_states *s = &line->detector->starts;
-    line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
+    start_states *s = &line->detector->known.starts;
+    line->states_known = config_culls(&line->detector->config) && start_states_hold(s, line->x0);
     line->vouched = s->vouched;
     if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
 }
@@ -128,7 +274,7 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     straight_motion m = {d->mesh, x0, x1, line->scalars};
     if (status == CSCD_OK) status = motion_check(d->context, &m);
     if (status == CSCD_OK) status = detector_check_still(d, x0, x1);
-    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, x0);
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->config.exclusions.seams, x0);
     if (status != CSCD_OK) return status;
     line->begun = false;
     line->reach = reach;
@@ -136,14 +282,15 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
     m = motion_of(line);
-    line->covered = max_of(d->limit.distance, reach);
+    line->covered = max_of(d->config.limit.distance, reach);
     line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
-    line->rules_revision = d->rules_revision;
+    line->rules_revision = d->config.rules_revision;
     detector_begin_call(d);
-    status = waiting_settle(d, line->x0);
-    if (status == CSCD_OK)
-        status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
-                                    &line->candidates);
+    const waiting_place waiting = detector_waiting_place(d);
+    const candidate_quest quest = {&d->space, &d->rebuild, config_growth(&d->config), line->covered,
+                                   line->beyond + motion_rounding(&m)};
+    status = waiting_settle(&waiting, line->x0);
+    if (status == CSCD_OK) status = candidates_collect(&quest, line->x0, line->x1, &line->candidates);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
@@ -208,7 +355,7 @@ size_t cscd_line_search_candidate_count(const cscd_line_search *line) {
 
 /* Were the candidates collected for what is looked at now? */
 static cscd_status check_rules(const cscd_line_search *line, const char *function) {
-    if (line->rules_revision == line->detector->rules_revision) return CSCD_OK;
+    if (line->rules_revision == line->detector->config.rules_revision) return CSCD_OK;
     return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
                         "%s: the rules of objects or the active vertices have been set since the line was "
                         "begun; call cscd_line_search_begin again",
@@ -284,7 +431,8 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     straight_motion m = motion_of(line);
     motion_at(&m, fraction, line->reached);
     cscd_proximities found;
-    status = waiting_look(d, line->x0);
+    const waiting_place waiting = detector_waiting_place(d);
+    status = waiting_look(&waiting, line->x0);
     interval_search search = proximity_search(d, line->reached, distance);
     if (status == CSCD_OK) status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
@@ -314,33 +462,34 @@ static cscd_status test_candidates_on_motion(void *of, const double *from, const
     line->done = 0.5 + 0.5 * line->done;
     interval_search search = detector_search_floors(d, from, to);
     cscd_status status = candidates_test(&line->candidates, &search);
-    return status == CSCD_OK ? contact_list_collect(&d->space, &d->exclusions, &d->contacts, &counters, out)
-                             : status;
+    return status == CSCD_OK
+               ? contact_list_collect(&d->space, &d->config.exclusions, &d->results.contacts, &counters, out)
+               : status;
 }
 
 /* Without any contact, contacts that the caller ignores included, the states of triangles are what they were. */
 static void carry_states_over(cscd_line_search *line) {
     cscd_detector *d = line->detector;
-    if (!line->states_known || !detector_culls(d) || search_space_found_any(&d->space)) return;
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->incomplete[c] = false;
-    memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
-    d->starts.vouched |= line->vouched;
-    d->starts.counted = false;
-    start_states_count(&d->starts);
-    start_states_end(&d->starts, line->reached, d->incomplete);
+    if (!line->states_known || !config_culls(&d->config) || search_space_found_any(&d->space)) return;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->interval.incomplete[c] = false;
+    memcpy(d->known.starts.triangles, line->states, d->mesh->triangle_count);
+    d->known.starts.vouched |= line->vouched;
+    d->known.starts.counted = false;
+    start_states_count(&d->known.starts);
+    start_states_end(&d->known.starts, line->reached, d->interval.incomplete);
 }
 
 /* Do the candidates still cover the separation? cscd_detector_set_separation may have been called since the line
  * began. */
 static cscd_status check_covered(const cscd_line_search *line) {
     const cscd_detector *d = line->detector;
-    double beyond = detector_floors_beyond(d, d->limit.distance, line->x0, line->x1);
-    bool covered = d->limit.distance + beyond <= line->covered + line->beyond;
-    if (covered && (!detector_thick(d) || beyond <= line->beyond)) return CSCD_OK;
+    double beyond = detector_floors_beyond(d, d->config.limit.distance, line->x0, line->x1);
+    bool covered = d->config.limit.distance + beyond <= line->covered + line->beyond;
+    if (covered && (!config_is_thick(&d->config) || beyond <= line->beyond)) return CSCD_OK;
     return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                         "cscd_line_search_max_step: min_separation is %g since the line was begun, and its "
                         "candidates reach to %g only; call cscd_line_search_begin again",
-                        d->limit.distance, line->covered);
+                        d->config.limit.distance, line->covered);
 }
 
 static cscd_status max_step_on_line(cscd_line_search *line, double longest, const cscd_mutable_view *reached,
@@ -361,10 +510,12 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
     detector_begin_call(d);
     line->done = 0.0;
     cscd_free_step step;
-    status = waiting_look(d, line->x0);
-    if (status == CSCD_OK) status = waiting_only_touching(d, line->x0);
-    if (status == CSCD_OK)
-        status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
+    const waiting_place waiting = detector_waiting_place(d);
+    const step_quest quest = {d->context, d->config.options.step_factor, longest, test_candidates_on_motion,
+                              line};
+    status = waiting_look(&waiting, line->x0);
+    if (status == CSCD_OK) status = waiting_only_touching(&waiting, line->x0);
+    if (status == CSCD_OK) status = free_step_find(&quest, &m, line->reached, &step);
     if (status == CSCD_IN_CONTACT) *out = step;
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);

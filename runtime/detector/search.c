@@ -1,9 +1,68 @@
-/* The search of one interval: from the trees, refitted to it, to the lanes' contacts. */
-#include "runtime/detector/interval_search.h"
+/* The searches of a detector: their data; one interval, from the trees, refitted to it, to the lanes' contacts; candidates,
+ * which serve every shorter motion. */
+#include "runtime/detector/search.h"
 
-#include "runtime/loose/loose.h"
-#include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/timer.h"
+
+#include <string.h>
+
+/* ---- the data ------------------------------------------------------------------------------------------ */
+
+cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
+    search_space s = {.context = mesh->context, .mesh = mesh, .moves_from = LONG_LIST};
+    cscd_status status = traversal_create(s.context, &s.traversal);
+    if (status == CSCD_OK) status = representatives_create(mesh, &s.representatives);
+    if (status == CSCD_OK) status = loose_elements_create(mesh, &s.loose);
+    if (status == CSCD_OK) {
+        s.lanes = context_allocate(s.context, s.traversal.lane_count, sizeof *s.lanes);
+        s.skipped = context_allocate(s.context, mesh->component_count, sizeof *s.skipped);
+        if (s.lanes == NULL || s.skipped == NULL) status = CSCD_OUT_OF_MEMORY;
+    }
+    if (status != CSCD_OK) {
+        search_space_destroy(&s);
+        return status;
+    }
+    *out = s;
+    return CSCD_OK;
+}
+
+static void free_lanes(search_space *s) {
+    for (uint32_t i = 0; s->lanes != NULL && i < s->traversal.lane_count; i++) {
+        contact_lane_free(s->context, &s->lanes[i]);
+        context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_VF].pairs);
+        context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_EE].pairs);
+    }
+    context_free(s->context, s->lanes);
+}
+
+void search_space_destroy(search_space *s) {
+    if (s->context == NULL) return;
+    free_lanes(s);
+    if (s->traversal.lanes != NULL) traversal_destroy(&s->traversal);
+    bvh_free(&s->bvh);
+    active_set_free(s->context, &s->active);
+    representatives_free(s->context, &s->representatives);
+    orphan_pairs_free(s->context, &s->orphans);
+    loose_elements_destroy(&s->loose);
+    context_free(s->context, s->skipped);
+    *s = (search_space){.context = NULL};
+}
+
+cscd_status search_space_status(const search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (s->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    }
+    return CSCD_OK;
+}
+
+bool search_space_found_any(const search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (s->lanes[i].count > 0) return true;
+    }
+    return false;
+}
+
+/* ---- one interval -------------------------------------------------------------------------------------- */
 
 interval_search interval_search_begin(search_space *space, const double *x0, const double *x1,
                                       separation limit) {
@@ -236,4 +295,116 @@ cscd_status interval_search_by_brute_force(interval_search *search) {
     interval_search_run(search, space->traversal.lane_count, test_share_of_pairs, search);
     timer_lap(&since, &search->timings.contact_ms);
     return interval_search_all_loose(search);
+}
+
+/* ---- candidates ---------------------------------------------------------------------------------------- */
+
+/* Joins the lists of all lanes. False: no memory. */
+static bool join_lists(const search_space *s, cscd_contact_kind kind, candidate_list *list) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) count += s->lanes[i].candidates[kind].count;
+    list->count = 0;
+    if (count > list->capacity) {
+        size_t capacity = count + count / 2;
+        uint32_t(*grown)[2] = context_grow(s->context, list->pairs, 0, capacity, sizeof *grown);
+        if (grown == NULL) return false;
+        list->pairs = grown;
+        list->capacity = capacity;
+    }
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        const candidate_list *found = &s->lanes[i].candidates[kind];
+        if (found->count > 0)
+            memcpy(list->pairs + list->count, found->pairs, found->count * sizeof *found->pairs);
+        list->count += found->count;
+    }
+    return true;
+}
+
+cscd_status candidates_take(const search_space *s, candidates *out) {
+    bool taken = join_lists(s, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
+                 join_lists(s, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
+    return taken ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+cscd_status candidates_collect(const candidate_quest *quest, const double *x0, const double *x1,
+                               candidates *out) {
+    search_space *space = quest->space;
+    interval_search search = interval_search_begin(space, x0, x1, (separation){quest->reach, quest->reach});
+    volume_growth growth = {quest->reach, quest->growth.of_objects, quest->margin};
+    search.interval.collecting = true;
+    search.interval.thick = growth.of_objects != NULL;
+    search.interval.beyond = quest->margin;
+    cscd_status status = bvh_rebuild_move(quest->rebuild, &space->bvh, x0, x1, growth, quest->growth);
+    if (status == CSCD_OK) status = interval_search_everything(&search);
+    if (status == CSCD_OK) status = interval_search_loose(&search);
+    return status == CSCD_OK ? candidates_take(space, out) : status;
+}
+
+void candidates_free(cscd_context *context, candidates *c) {
+    context_free(context, c->lists[CSCD_CONTACT_VF].pairs);
+    context_free(context, c->lists[CSCD_CONTACT_EE].pairs);
+    *c = (candidates){{{NULL, 0, 0}, {NULL, 0, 0}}};
+}
+
+/* ---- tests of candidates --------------------------------------------------------------------------------------------- */
+
+typedef struct testing {
+    const candidates *candidates;
+    interval_search *search;
+} testing;
+
+static void test_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    swept_box vertex = swept_box_of(interval, &pair[0], 1);
+    swept_box face = swept_box_of(interval, interval->mesh->triangles[pair[1]], 3);
+    if (!swept_boxes_within(&vertex, &face, pair_reach(interval, CSCD_CONTACT_VF, pair[0], pair[1]))) return;
+    lane->feature_pairs++;
+    narrow_phase_test_vf(interval, pair[0], pair[1], lane);
+}
+
+static void test_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    if (!loose_edges_meet(interval, pair[0], pair[1])) return;
+    swept_box a = swept_box_of(interval, interval->mesh->edges[pair[0]], 2);
+    swept_box b = swept_box_of(interval, interval->mesh->edges[pair[1]], 2);
+    if (!swept_boxes_within(&a, &b, pair_reach(interval, CSCD_CONTACT_EE, pair[0], pair[1]))) return;
+    lane->feature_pairs++;
+    narrow_phase_test_ee(interval, pair[0], pair[1], lane);
+}
+
+/* After so many candidates the host is asked whether to go on. */
+enum { CANDIDATES_AT_ONCE = 1024 };
+
+/* Tests a lane's share of both lists; the cursor counts the candidates of the two. */
+static void test_share(void *data, uint32_t index) {
+    const testing *t = data;
+    const swept_interval *interval = &t->search->interval;
+    const search_space *space = t->search->space;
+    contact_lane *lane = &space->lanes[index];
+    size_t done = 0;
+    lane->suspended = false;
+    for (int kind = 0; kind < 2; kind++) {
+        const candidate_list *list = &t->candidates->lists[kind];
+        size_t begin = parallel_share(list->count, index, space->traversal.lane_count);
+        size_t end = parallel_share(list->count, index + 1, space->traversal.lane_count);
+        uint64_t left = lane->cursor - done;
+        size_t skipped = left < end - begin ? (size_t)left : end - begin;
+        for (size_t i = begin + skipped; i < end && !lane->out_of_memory; i++) {
+            double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
+            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&space->context->progress, share))
+                return;
+            (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
+            if (contact_lane_suspend(lane, lane->cursor + 1)) return;
+        }
+        done += end - begin;
+    }
+    narrow_phase_finish(interval, lane);
+}
+
+cscd_status candidates_test(const candidates *c, interval_search *search) {
+    search_space *space = search->space;
+    testing t = {c, search};
+    progress_stage(&space->context->progress, "candidates", 0.0, 1.0);
+    interval_search_run(search, space->traversal.lane_count, test_share, &t);
+    interval_search_half_spaces(search);
+    cscd_status status = search_space_status(space);
+    return status == CSCD_OK ? context_progress_status(space->context) : status;
 }

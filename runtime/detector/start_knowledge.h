@@ -1,15 +1,18 @@
-/* Snapshot of what a call that is cancelled or fails must restore.
+/* What a detector knows of the start of its next interval, and how a call that fails puts that back. */
+#pragma once
+
+#include "runtime/culling/culling.h"
+#include "runtime/detector/verlet_list.h"
+#include "runtime/intersections/intersections.h"
+#include "src/mesh/collapsed.h"
+
+/* A snapshot of what a call that is cancelled or fails must restore.
  *
  * Such a call may have found contacts and tainted triangles. States are those of its start until it succeeds, and an
  * unfinished check records nothing. So the states never promise too much, and the next call would be sound without a
  * rollback. But it might do more work, or report other contacts in mode EARLIEST, than it would have done without
  * the failure. That is why the states are put back. Trees that the call has rebuilt stay, because they serve the
  * repetition as well. */
-#pragma once
-
-#include "runtime/bvh/bvh.h"
-#include "runtime/culling/culling.h"
-
 typedef struct rollback {
     uint8_t *triangles;          /* start_states.triangles; NULL: nothing is restored */
     component_start *components; /* start_states.of */
@@ -26,3 +29,11 @@ void rollback_free(cscd_context *context, rollback *r);
 
 void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees);
 void rollback_restore(const rollback *r, start_states *starts, bvh_rebuild *trees);
+
+typedef struct start_knowledge {
+    start_states starts;
+    static_check check;
+    collapsed_components collapsed; /* at the moment of the last check, or at an end of the last interval */
+    verlet_list verlet;
+    rollback before; /* the current call */
+} start_knowledge;
