@@ -9,7 +9,6 @@
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/surface.h"
-#include "src/mesh/views.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,7 +4,6 @@
 #include "src/core/names.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <cscd/research.h>
 

@@ -5,7 +5,6 @@
 #include "src/core/least_sizes.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <assert.h>
 #include <math.h>

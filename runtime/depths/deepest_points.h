@@ -4,7 +4,7 @@
 
 #include "runtime/depths/depths.h"
 #include "runtime/depths/outer_surface.h"
-#include "src/mesh/part_labels.h"
+#include "src/mesh/parts.h"
 
 /* ---- cells --------------------------------------------------------------------------------------------- */
 

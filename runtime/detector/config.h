@@ -7,7 +7,7 @@
 #include "runtime/detector/search.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/names.h"
-#include "src/mesh/part_labels.h"
+#include "src/mesh/parts.h"
 
 /* How a method goes through the pipeline. */
 typedef struct method_stages {

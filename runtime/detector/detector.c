@@ -6,7 +6,7 @@
 #include "src/core/least_sizes.h"
 #include "src/core/sort.h"
 #include "src/core/vec3.h"
-#include "src/mesh/given_contacts.h"
+#include "src/mesh/parts.h"
 
 #include <math.h>
 #include <string.h>

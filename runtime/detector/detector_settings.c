@@ -1,7 +1,6 @@
 /* Changes of a live detector: distances, rules for objects, what is left out, active vertices, parts. */
 #include "runtime/detector/detector.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 /* ---- rules, distances, limits -------------------------------------------------------------------------- */
 

@@ -6,7 +6,6 @@
 #include "src/core/sort.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <math.h>
 #include <string.h>

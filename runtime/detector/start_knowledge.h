@@ -4,7 +4,7 @@
 #include "runtime/culling/culling.h"
 #include "runtime/detector/verlet_list.h"
 #include "runtime/intersections/intersections.h"
-#include "src/mesh/collapsed.h"
+#include "src/mesh/surface.h"
 
 /* A snapshot of what a call that is cancelled or fails must restore.
  *

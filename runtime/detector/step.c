@@ -3,7 +3,6 @@
 
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "runtime/ccd/ccd.h"
 #include "runtime/loose/loose.h"
 #include "src/mesh/mesh.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 
 #include <string.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "src/core/memory.h"
-#include "src/mesh/given_contacts.h"
 #include "src/mesh/mesh.h"
+#include "src/mesh/parts.h"
 
 #include <cscd/events.h>
 

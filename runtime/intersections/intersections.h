@@ -7,8 +7,7 @@
 
 #include "runtime/bvh/bvh.h"
 #include "src/core/memory.h"
-#include "src/mesh/bodies.h"
-#include "src/mesh/part_labels.h"
+#include "src/mesh/parts.h"
 
 #include <cscd/surface.h>
 

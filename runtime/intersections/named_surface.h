@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/intersections/intersections.h"
-#include "src/mesh/symbolic.h"
+#include "src/mesh/predicates.h"
 
 static inline symbolic_point surface_point(const named_surface *s, uint32_t vertex) {
     return (symbolic_point){s->positions + (size_t)vertex * 3, surface_name(s, vertex)};

@@ -6,7 +6,6 @@
 #include "src/core/floating.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
-#include "src/mesh/volume_sign.h"
 
 #include <string.h>
 

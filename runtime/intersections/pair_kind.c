@@ -4,7 +4,6 @@
 
 #include "src/mesh/mesh.h"
 #include "src/mesh/predicates.h"
-#include "src/mesh/triangle_intersection.h"
 
 /* Corners point into the positions of the mesh, so two of them are equal if they are one vertex. */
 typedef struct corner_list {

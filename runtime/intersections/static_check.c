@@ -2,7 +2,6 @@
 #include "runtime/intersections/static_check.h"
 
 #include "src/mesh/predicates.h"
-#include "src/mesh/triangle_intersection.h"
 
 #include <assert.h>
 #include <stdatomic.h>

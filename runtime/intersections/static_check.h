@@ -14,7 +14,7 @@ enum { NORMAL_SIGNS_X = 3, NORMAL_SIGNS_Y = 12, NORMAL_SIGNS_Z = 48, RISES_ALONG
 
 typedef struct intersection_kernels {
     /* Removes from a list of pairs of different triangles, in place and without keeping their order, those that
-     * certainly do not intersect (see src/mesh/triangle_intersection.h) at positions that positions_check has
+     * certainly do not intersect (see src/mesh/predicates.h) at positions that positions_check has
      * accepted. Pairs that share three vertices do not; they are kept only on demand. Pairs in which an edge certainly
      * passes through the inside of the other face move to crossing, which has room for all. Returns how many are left.
      * All orders are the same on every level. */

@@ -289,25 +289,25 @@ static cscd_status move_list(const seam_list *s, const cscd_mesh_change *change,
 
 /* ---- ignored pairs of another mesh ------------------------------------------------------------------------------------- */
 
-static size_t count_pairs(const exclusions *e, const mesh_heirs *h) {
+static size_t count_pairs(const exclusions *e, const mesh_successors *h) {
     size_t count = 0;
     for (size_t i = 0; i < e->ignored_count; i++)
-        count += mesh_heirs_of(h, (uint32_t)(e->ignored[i] >> 32)).count *
-                 mesh_heirs_of(h, (uint32_t)e->ignored[i]).count;
+        count += mesh_successors_of(h, (uint32_t)(e->ignored[i] >> 32)).count *
+                 mesh_successors_of(h, (uint32_t)e->ignored[i]).count;
     return count;
 }
 
-static void list_pairs_of(const mesh_heirs *h, uint32_t a, uint32_t b, exclusions *out) {
-    heir_list of_a = mesh_heirs_of(h, a), of_b = mesh_heirs_of(h, b);
+static void list_pairs_of(const mesh_successors *h, uint32_t a, uint32_t b, exclusions *out) {
+    successor_list of_a = mesh_successors_of(h, a), of_b = mesh_successors_of(h, b);
     for (size_t i = 0; i < of_a.count; i++) {
         for (size_t j = 0; j < of_b.count; j++) {
-            uint64_t s = heir_at(&of_a, i), t = heir_at(&of_b, j);
+            uint64_t s = successor_at(&of_a, i), t = successor_at(&of_b, j);
             out->ignored[out->ignored_count++] = s < t ? s << 32 | t : t << 32 | s;
         }
     }
 }
 
-static cscd_status move_listed(const exclusions *e, const mesh_heirs *h, exclusions *out) {
+static cscd_status move_listed(const exclusions *e, const mesh_successors *h, exclusions *out) {
     cscd_context *context = out->mesh->context;
     size_t count = count_pairs(e, h);
     out->ignored = context_allocate(context, count, sizeof *out->ignored);
@@ -321,11 +321,11 @@ static cscd_status move_listed(const exclusions *e, const mesh_heirs *h, exclusi
 }
 
 static cscd_status move_ignored(const exclusions *e, const cscd_mesh_change *change, exclusions *out) {
-    mesh_heirs h;
+    mesh_successors h;
     if (e->ignored_count == 0) return CSCD_OK;
-    cscd_status status = mesh_heirs_find(out->mesh->context, change, &change->triangles, &h);
+    cscd_status status = mesh_successors_find(out->mesh->context, change, &change->triangles, &h);
     if (status == CSCD_OK) status = move_listed(e, &h, out);
-    mesh_heirs_free(out->mesh->context, &h);
+    mesh_successors_free(out->mesh->context, &h);
     return status;
 }
 

@@ -4,7 +4,7 @@
 
 #include "runtime/bvh/bvh.h"
 #include "src/core/context.h"
-#include "src/mesh/mesh_heirs.h"
+#include "src/mesh/mesh_change.h"
 
 /* ---- sets of pairs ------------------------------------------------------------------------------------- */
 

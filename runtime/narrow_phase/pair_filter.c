@@ -3,7 +3,7 @@
 #include "runtime/narrow_phase/pair_filter.h"
 
 #include "src/core/floating.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,7 +6,6 @@
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/floating.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <assert.h>
 #include <math.h>

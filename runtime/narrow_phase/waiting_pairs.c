@@ -175,9 +175,9 @@ bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd
 
 /* ---- another mesh: pairs that wait already --------------------------------------------------------------------------- */
 
-typedef struct heirs_of_kinds {
-    mesh_heirs vertices, edges, triangles, objects;
-} heirs_of_kinds;
+typedef struct successors_of_kinds {
+    mesh_successors vertices, edges, triangles, objects;
+} successors_of_kinds;
 
 static bool share_vertex(const uint32_t *a, int a_count, const uint32_t *b, int b_count) {
     for (int i = 0; i < a_count; i++) {
@@ -224,25 +224,27 @@ static bool add_pair(const cscd_mesh *mesh, named_pair_set *set, cscd_contact_ki
            named_pair_set_add(mesh->context, set, kind, ordered ? a : b, ordered ? b : a);
 }
 
-static bool move_pair(const named_pair *pair, const heirs_of_kinds *h, const cscd_mesh *mesh,
+static bool move_pair(const named_pair *pair, const successors_of_kinds *h, const cscd_mesh *mesh,
                       named_pair_set *out) {
     cscd_contact_kind kind = (cscd_contact_kind)pair->kind;
     bool of_edge = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV;
-    const mesh_heirs *first = of_edge ? &h->edges : kind == CSCD_CONTACT_TT ? &h->triangles : &h->vertices;
-    const mesh_heirs *second = kind == CSCD_CONTACT_EE                              ? &h->edges
-                               : kind == CSCD_CONTACT_EV || kind == CSCD_CONTACT_VV ? &h->vertices
-                               : kind == CSCD_CONTACT_VH                            ? &h->objects
-                                                                                    : &h->triangles;
-    heir_list of_a = mesh_heirs_of(first, pair->a), of_b = mesh_heirs_of(second, pair->b);
+    const mesh_successors *first = of_edge                   ? &h->edges
+                                   : kind == CSCD_CONTACT_TT ? &h->triangles
+                                                             : &h->vertices;
+    const mesh_successors *second = kind == CSCD_CONTACT_EE                              ? &h->edges
+                                    : kind == CSCD_CONTACT_EV || kind == CSCD_CONTACT_VV ? &h->vertices
+                                    : kind == CSCD_CONTACT_VH                            ? &h->objects
+                                                                                         : &h->triangles;
+    successor_list of_a = mesh_successors_of(first, pair->a), of_b = mesh_successors_of(second, pair->b);
     for (size_t i = 0; i < of_a.count; i++) {
         for (size_t j = 0; j < of_b.count; j++) {
-            if (!add_pair(mesh, out, kind, heir_at(&of_a, i), heir_at(&of_b, j))) return false;
+            if (!add_pair(mesh, out, kind, successor_at(&of_a, i), successor_at(&of_b, j))) return false;
         }
     }
     return true;
 }
 
-static bool move_set(const named_pair_set *set, const heirs_of_kinds *h, const cscd_mesh *mesh,
+static bool move_set(const named_pair_set *set, const successors_of_kinds *h, const cscd_mesh *mesh,
                      named_pair_set *out) {
     for (size_t i = 0; i < set->count; i++) {
         if (!move_pair(&set->items[i], h, mesh, out)) return false;
@@ -253,18 +255,18 @@ static bool move_set(const named_pair_set *set, const heirs_of_kinds *h, const c
 static cscd_status move_sets(const waiting_pairs *w, const cscd_mesh *mesh, const cscd_mesh_change *change,
                              waiting_pairs *out) {
     if (w->pairs.count == 0 && w->torn.count == 0) return CSCD_OK;
-    heirs_of_kinds h = {.vertices = {.map = NULL}};
+    successors_of_kinds h = {.vertices = {.map = NULL}};
     cscd_context *context = mesh->context;
-    cscd_status status = mesh_heirs_find(context, change, &change->vertices, &h.vertices);
-    if (status == CSCD_OK) status = mesh_heirs_find(context, change, &change->edges, &h.edges);
-    if (status == CSCD_OK) status = mesh_heirs_find(context, change, &change->triangles, &h.triangles);
-    if (status == CSCD_OK) status = mesh_heirs_find(context, change, &change->objects, &h.objects);
+    cscd_status status = mesh_successors_find(context, change, &change->vertices, &h.vertices);
+    if (status == CSCD_OK) status = mesh_successors_find(context, change, &change->edges, &h.edges);
+    if (status == CSCD_OK) status = mesh_successors_find(context, change, &change->triangles, &h.triangles);
+    if (status == CSCD_OK) status = mesh_successors_find(context, change, &change->objects, &h.objects);
     bool moved = status == CSCD_OK && move_set(&w->pairs, &h, mesh, &out->pairs) &&
                  move_set(&w->torn, &h, mesh, &out->torn) && named_pair_set_sort(mesh->context, &out->pairs);
-    mesh_heirs_free(mesh->context, &h.vertices);
-    mesh_heirs_free(mesh->context, &h.edges);
-    mesh_heirs_free(mesh->context, &h.triangles);
-    mesh_heirs_free(mesh->context, &h.objects);
+    mesh_successors_free(mesh->context, &h.vertices);
+    mesh_successors_free(mesh->context, &h.edges);
+    mesh_successors_free(mesh->context, &h.triangles);
+    mesh_successors_free(mesh->context, &h.objects);
     return moved ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 

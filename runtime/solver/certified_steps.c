@@ -5,7 +5,6 @@
 #include "src/core/timer.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <string.h>
 

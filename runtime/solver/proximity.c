@@ -7,7 +7,6 @@
 #include "src/core/sort.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
-#include "src/mesh/views.h"
 
 #include <string.h>
 

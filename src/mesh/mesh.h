@@ -1,7 +1,49 @@
 /* A mesh with its connectivity: edges, stars and components, which are built once. */
 #pragma once
 
-#include "src/mesh/loose_objects.h"
+#include "src/core/context.h"
+
+/* ---- objects that are not of triangles: wires, points and half-spaces -------------------------------------- */
+
+/* Wires are edges whose stars are empty, among the other edges. Behind the last edge the array of edges goes on with
+ * one for each vertex of an object of points, in their order: it joins the vertex with itself. So a point and a wire, or
+ * two points, are two edges for every elementary test. */
+typedef struct loose_objects {
+    uint32_t wire_count, point_count, half_space_count;
+
+    /* The wires at a vertex, as vertex_stars has its triangles; NULL: there are none. */
+    uint32_t *wire_star_offsets, *wire_stars;
+
+    double (*normals)[3]; /* per object, of half-spaces; NULL: there are none */
+} loose_objects;
+
+/* What descriptions ask for together. */
+typedef struct loose_totals {
+    uint64_t wires, points;
+} loose_totals;
+
+/* Checks what an object of any kind says of wires, points and half-spaces. `object` is how messages begin. */
+cscd_status loose_desc_check(cscd_context *context, const cscd_object_desc *desc, const char *object);
+
+void loose_totals_add(loose_totals *totals, const cscd_object_desc *desc);
+
+/* The number of vertices that loose objects give a reason for, at the most. */
+uint64_t loose_totals_vertices(const loose_totals *totals);
+
+/* Returns INVALID_MESH, with a sentence, if there are more points or edges than numbers for them. */
+cscd_status loose_totals_check(cscd_context *context, const loose_totals *totals, uint64_t triangles);
+
+/* Puts wires among the edges of triangles, and makes room for points behind them. */
+cscd_status mesh_add_wires(cscd_mesh *mesh, const cscd_object_desc *objects);
+
+/* The number, behind the edges, of a vertex of an object of points. */
+uint32_t mesh_edge_of_point(const cscd_mesh *mesh, uint32_t vertex);
+
+/* Fills in mesh->loose from the objects, whose edges are known, and lists the points behind the edges, where there is room
+ * for them. Normals are left 0 for the caller. */
+cscd_status mesh_list_loose_objects(cscd_mesh *mesh);
+
+/* ---- the mesh ---------------------------------------------------------------------------------------------- */
 
 /* What it says of the triangles never changes, and any number of objects in any contexts read it at the same time.
  * Each of them has a copy of this struct, its own view of the mesh, whose context is the one that the object works
@@ -12,7 +54,7 @@ struct cscd_mesh {
     uint32_t vertex_count, triangle_count, edge_count, component_count;
 
     uint32_t (*triangles)[3];
-    uint32_t (*edges)[2];          /* smaller vertex first, sorted; loose points follow (loose_objects.h) */
+    uint32_t (*edges)[2];          /* smaller vertex first, sorted; loose points follow */
     uint32_t (*triangle_edges)[3]; /* edge i joins the corners i and i + 1 */
 
     /* The star of x is the list of triangles stars[offsets[x] .. offsets[x + 1]), ascending. */
@@ -24,9 +66,9 @@ struct cscd_mesh {
 
     uint32_t object_count;
     cscd_object *objects;
-    bool *
-        obstacles; /* per component: it is an obstacle, whose features are not tested with those of obstacles;
-                      * NULL: there are no obstacles */
+
+    /* Per component: it is an obstacle, whose features are not tested with those of obstacles; NULL: there are none. */
+    bool *obstacles;
 
     loose_objects loose; /* objects that are not of triangles */
 };
@@ -41,7 +83,7 @@ cscd_mesh mesh_seen_from(cscd_context *context, const cscd_mesh *mesh);
 /* The mesh that its creator has. */
 const cscd_mesh *mesh_of_creator(const cscd_mesh *mesh);
 
-/* Are these views of one mesh? */
+/* Tells whether these are views of one mesh. */
 static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
     return a->shared == b->shared;
 }
@@ -79,10 +121,11 @@ cscd_status mesh_build_topology(cscd_mesh *mesh);
 /* Builds triangle_components and components from the topology. */
 cscd_status mesh_build_components(cscd_mesh *mesh);
 
-/* Lists the triangles component by component: those of c are list[offsets[c] .. offsets[c + 1]). offsets: component_count + 1, all 0. */
+/* Lists the triangles component by component: those of c are list[offsets[c] .. offsets[c + 1]). offsets: component_count + 1,
+ * all 0. */
 void mesh_list_by_component(const cscd_mesh *mesh, uint32_t *list, uint32_t *offsets);
 
-/* Descriptions of objects, and what has to be known of the mesh that they become a part of. */
+/* Descriptions of objects, and the sizes of the mesh that they become a part of. */
 typedef struct described_objects {
     const cscd_object_desc *descs;
     uint32_t count;
@@ -112,18 +155,17 @@ static inline bool component_is_obstacle(const cscd_mesh *mesh, uint32_t compone
     return mesh->obstacles != NULL && mesh->obstacles[component];
 }
 
-/* Does the triangle belong to an obstacle? */
 static inline bool triangle_of_obstacle(const cscd_mesh *mesh, uint32_t triangle) {
     return component_is_obstacle(mesh, mesh->triangle_components[triangle]);
 }
 
-/* Are some objects not of triangles? */
+/* Tells whether some objects are not of triangles. */
 static inline bool mesh_has_loose_objects(const cscd_mesh *mesh) {
     const loose_objects *loose = &mesh->loose;
     return loose->wire_count > 0 || loose->point_count > 0 || loose->half_space_count > 0;
 }
 
-/* Is this the number of a point behind the edges? */
+/* Tells whether this is the number of a point behind the edges. */
 static inline bool edge_is_point(const cscd_mesh *mesh, uint32_t edge) {
     return mesh->loose.point_count > 0 && edge >= mesh->edge_count;
 }
@@ -133,12 +175,13 @@ static inline uint32_t edge_star_size(const cscd_mesh *mesh, uint32_t edge) {
     return mesh->edge_star_offsets[edge + 1] - mesh->edge_star_offsets[edge];
 }
 
-/* Does it belong to no triangle? Such a vertex is loose, or takes no part in anything. */
+/* A vertex of no triangle is loose, or takes no part in anything. */
 static inline bool vertex_has_no_triangle(const cscd_mesh *mesh, uint32_t vertex) {
     return mesh->vertex_star_offsets[vertex + 1] == mesh->vertex_star_offsets[vertex];
 }
 
-/* Pairs of triangles at a vertex grow with the square of their number, so from this one on they are looked for otherwise. */
+/* The number of pairs of triangles at a vertex grows with the square of theirs. A vertex of this many triangles is a hub,
+ * whose pairs are found in another way. */
 enum { HUB_TRIANGLES = 256 };
 
 static inline bool vertex_is_hub(const cscd_mesh *mesh, uint32_t vertex) {
@@ -151,12 +194,12 @@ static inline uint32_t wires_at_vertex(const cscd_mesh *mesh, uint32_t vertex) {
     return offsets != NULL ? offsets[vertex + 1] - offsets[vertex] : 0;
 }
 
-/* Is it a wire, or a point behind the edges? */
+/* Tells whether it is a wire, or a point behind the edges. */
 static inline bool edge_is_loose(const cscd_mesh *mesh, uint32_t edge) {
     return edge_is_point(mesh, edge) || edge_star_size(mesh, edge) == 0;
 }
 
-/* Does the triangle run along one of its edges from edge[0] to edge[1]? */
+/* Tells whether the triangle runs along one of its edges from edge[0] to edge[1]. */
 static inline bool triangle_runs_along(const uint32_t triangle[3], const uint32_t edge[2]) {
     const uint32_t *t = triangle;
     return (t[0] == edge[0] && t[1] == edge[1]) || (t[1] == edge[0] && t[2] == edge[1]) ||

@@ -36,13 +36,13 @@ static inline const number_run *number_map_run(const number_map *map, uint32_t o
     return NULL;
 }
 
-/* What has become of an old number. */
+/* The new number of an old one. */
 static inline uint32_t number_map_to_new(const number_map *map, uint32_t old) {
     const number_run *run = number_map_run(map, old);
     return run != NULL ? run->to + (old - run->from) : map->to_new[old];
 }
 
-/* Where what belongs to one object stands in the arrays of a mesh; or to several that follow each other. */
+/* The places in the arrays of a mesh that belong to one object, or to several that follow each other. */
 typedef struct object_range {
     uint32_t vertex, vertex_count, edge, edge_count, triangle, triangle_count, component, component_count;
 } object_range;
@@ -69,7 +69,8 @@ struct cscd_mesh_change {
 /* Fills in what the runs say, once; from any thread. */
 void mesh_change_make_whole(const cscd_mesh_change *change, const number_map *map);
 
-/* Of an object that has changed: is the triangle of the new mesh, and are its corners, all that has become of one old triangle and of its corners? */
+/* Tells whether the changed object has kept this triangle of the new mesh whole: it is all that one old triangle has become,
+ * and its corners are all that the old corners have become. */
 static inline bool mesh_change_keeps(const cscd_mesh_change *change, uint32_t triangle) {
     uint32_t origin = change->triangles.to_old[triangle];
     if (origin == UINT32_MAX || change->triangles.to_new[origin] != triangle) return false;
@@ -94,27 +95,48 @@ typedef struct object_source {
     uint32_t object;
 } object_source;
 
-/* Finds the ranges of all objects of a mesh. */
-void mesh_find_ranges(const cscd_mesh *mesh, object_range *out);
-
 /* An object on its way from one mesh to another. */
 typedef struct object_move {
     object_source source;
     object_range from, to;
 } object_move;
 
-/* Fills an empty mesh with copies of objects of others: all arrays but for their offsets, so the mesh is what
- * mesh_build_objects makes of their descriptions. Fills in where they go to. On failure, which is OUT_OF_MEMORY without a
- * sentence, the caller destroys the mesh. */
-cscd_status mesh_splice(cscd_mesh *mesh, object_move *moves, uint32_t count);
-
-/* What an object of the new mesh was. */
+/* The origin of an object of the new mesh. */
 typedef struct object_origin {
     uint32_t old_object;                               /* UINT32_MAX: a new one */
-    bool changed;                                      /* the caller has described it anew */
+    bool changed;                                      /* the caller has described it again */
     const uint32_t *vertex_origins, *triangle_origins; /* of the caller; NULL: the same numbers */
 } object_origin;
 
 /* Fills in the maps, whose arrays there are; moves and origins: one for each object of the new mesh. */
 void mesh_change_map(cscd_mesh_change *change, const object_range *old_ranges, const object_move *moves,
                      const object_origin *origins);
+
+/* ---- all successors of a feature -------------------------------------------------------------------------------- */
+
+/* Most features have one successor, which the map says. The others, of objects that have changed, are sorted: the old number
+ * in the upper half, the new one in the lower one. */
+typedef struct mesh_successors {
+    const number_map *map;
+    uint64_t *others;
+    size_t other_count;
+} mesh_successors;
+
+/* The successors of one old feature. */
+typedef struct successor_list {
+    uint32_t first;
+    const uint64_t *others;
+    size_t count; /* with the first */
+} successor_list;
+
+/* map: one of the change's. On failure *out holds nothing. */
+cscd_status mesh_successors_find(cscd_context *context, const cscd_mesh_change *change, const number_map *map,
+                                 mesh_successors *out);
+void mesh_successors_free(cscd_context *context, mesh_successors *h);
+
+successor_list mesh_successors_of(const mesh_successors *h, uint32_t old);
+
+/* In ascending order. */
+static inline uint32_t successor_at(const successor_list *list, size_t i) {
+    return i == 0 ? list->first : (uint32_t)list->others[i - 1];
+}

@@ -1,6 +1,8 @@
 /* Maps from the features of a mesh to those of one that was made from it, and back; which components are untouched. */
 #include "src/mesh/mesh_change.h"
 
+#include "src/core/sort.h"
+
 #include <string.h>
 
 /* ---- objects that have not changed ---------------------------------------------------------------------- */
@@ -220,4 +222,73 @@ void mesh_change_map(cscd_mesh_change *change, const object_range *old_ranges, c
     }
     for (uint32_t i = 0; i < change->run_count; i++) map_run(change, &change->runs[i]);
     change->objects.whole = change->components.whole = true;
+}
+
+/* ---- all successors of a feature -------------------------------------------------------------------------------- */
+
+/* Features of objects that have changed, of the kind of the map. */
+static number_run described_numbers(const cscd_mesh_change *change, const number_map *map, uint32_t i) {
+    const object_range *range = &change->described[i];
+    if (map == &change->vertices) return (number_run){0, range->vertex, range->vertex_count};
+    if (map == &change->edges) return (number_run){0, range->edge, range->edge_count};
+    return (number_run){0, range->triangle, range->triangle_count};
+}
+
+static bool is_another(const number_map *map, uint32_t now) {
+    return map->to_old[now] != UINT32_MAX && map->to_new[map->to_old[now]] != now;
+}
+
+/* Lists them where there is room for them, and returns how many there are. Objects have one successor. */
+static size_t list_others(const cscd_mesh_change *change, const number_map *map, uint64_t *out) {
+    size_t count = 0;
+    for (uint32_t i = 0; map != &change->objects && i < change->described_count; i++) {
+        number_run run = described_numbers(change, map, i);
+        for (uint32_t now = run.to; now < run.to + run.count; now++) {
+            if (!is_another(map, now)) continue;
+            if (out != NULL) out[count] = (uint64_t)map->to_old[now] << 32 | now;
+            count++;
+        }
+    }
+    return count;
+}
+
+cscd_status mesh_successors_find(cscd_context *context, const cscd_mesh_change *change, const number_map *map,
+                                 mesh_successors *out) {
+    mesh_successors h = {.map = map, .other_count = list_others(change, map, NULL)};
+    uint64_t *spare;
+    array_list list = {{ARRAY(h.others, h.other_count), ARRAY(spare, h.other_count)}};
+    *out = (mesh_successors){.map = NULL};
+    if (!context_allocate_all(context, list)) return CSCD_OUT_OF_MEMORY;
+    list_others(change, map, h.others);
+    sort_by_number(h.others, spare, h.other_count, sizeof *h.others);
+    context_free(context, spare);
+    *out = h;
+    return CSCD_OK;
+}
+
+void mesh_successors_free(cscd_context *context, mesh_successors *h) {
+    context_free(context, h->others);
+    *h = (mesh_successors){.map = NULL};
+}
+
+static size_t first_other(const mesh_successors *h, uint64_t least) {
+    size_t low = 0, high = h->other_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (h->others[middle] < least)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+successor_list mesh_successors_of(const mesh_successors *h, uint32_t old) {
+    successor_list list = {.first = number_map_to_new(h->map, old)};
+    if (list.first == UINT32_MAX) return list;
+    size_t begin = first_other(h, (uint64_t)old << 32);
+    list.others = h->others + begin;
+    for (size_t i = begin; i < h->other_count && h->others[i] >> 32 == old; i++) list.count++;
+    list.count++;
+    return list;
 }

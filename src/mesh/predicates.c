@@ -14,8 +14,6 @@
  * for nonoverlapping expansions and return them, so they can be chained in any order. */
 #include "src/mesh/predicates.h"
 
-#include "src/mesh/error_free.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>

@@ -4,8 +4,6 @@
  * a row or column: the product of what moves them, times the minor that is left without their rows and columns, times
  * a sign. The power of epsilon in front of a minor is the sum of its entries' powers, so that comparing the powers is
  * comparing the sets as binary numbers, bit 3 r + k for coordinate k of row r. */
-#include "src/mesh/symbolic.h"
-
 #include "src/mesh/predicates.h"
 
 #include <assert.h>

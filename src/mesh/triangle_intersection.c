@@ -2,10 +2,9 @@
  * tests for each number of shared vertices, and why that is enough, is in docs/theory/static-check.md, whose
  * lemmas are cited below. Vertices within a triangle have distinct indices; their positions may coincide or
  * lie on one line. */
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 
 #include "src/mesh/mesh.h"
-#include "src/mesh/predicates.h"
 
 #include <stddef.h>
 

@@ -2,7 +2,7 @@
 #include "runtime/bvh/bvh_parts.h"
 #include "src/core/vec3.h"
 #include "src/mesh/mesh.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"

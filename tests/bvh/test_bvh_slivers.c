@@ -1,7 +1,7 @@
 /* Slivers side by side, and large triangles on each other: the same answers as of all pairs, and in near-linear time. */
 #include "models/shapes/extreme_shapes.h"
 #include "src/mesh/mesh.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/oracle.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"

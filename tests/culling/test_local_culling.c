@@ -4,7 +4,6 @@
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
-#include "src/mesh/triangle_intersection.h"
 #include "tests/support/bvh/direction_gap.h"
 #include "tests/support/culling/exact_numbers.h"
 #include "tests/support/packed.h"

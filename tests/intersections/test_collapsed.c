@@ -2,7 +2,7 @@
  * force that leaves out the same pairs; what is certified has been looked at; time and memory stay linear. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/collapsed_oracle.h"
 #include "tests/support/methods.h"
 #include "tests/support/oracle.h"

@@ -3,7 +3,6 @@
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
-#include "src/mesh/triangle_intersection.h"
 #include "tests/support/collapsed_oracle.h"
 #include "tests/support/packed.h"
 #include "tests/support/rig.h"

@@ -3,7 +3,6 @@
  * are disjoint. */
 #include "runtime/intersections/static_check.h"
 #include "src/mesh/predicates.h"
-#include "src/mesh/triangle_intersection.h"
 #include "tests/support/levels.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

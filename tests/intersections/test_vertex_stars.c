@@ -1,7 +1,7 @@
 /* Stars that are called clear do not intersect themselves, whatever mesh they are in; smooth ones are called clear; and the
  * others give all their pairs, each of them once. */
 #include "runtime/intersections/static_check.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/levels.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"

@@ -1,5 +1,5 @@
 /* Bodies: components that parts join within an object, in the order of their objects; an object without triangles is one. */
-#include "src/mesh/bodies.h"
+#include "src/mesh/parts.h"
 #include "tests/support/test.h"
 
 static const uint32_t two_triangles[] = {0, 1, 2, 3, 4, 5}, wire[] = {0, 1};

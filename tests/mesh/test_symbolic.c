@@ -1,5 +1,5 @@
 /* The signs of moved points against polynomials that are written out, on grids so small that everything degenerates. */
-#include "src/mesh/symbolic.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/intersections/epsilon_polynomial.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"

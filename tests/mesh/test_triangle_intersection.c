@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/intersections/feature_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* Scalars of views that share bytes are found, as by marking every byte. */
-#include "src/mesh/view_overlap.h"
+#include "src/mesh/positions.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

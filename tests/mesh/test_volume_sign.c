@@ -1,7 +1,7 @@
 /* The sign of the volume that closed components enclose, against exact integers: grids, flat bodies, bodies that are far from
  * the origin or an ulp thick, and bodies that enclose as much the one way as the other. */
 #include "src/core/context.h"
-#include "src/mesh/volume_sign.h"
+#include "src/mesh/surface.h"
 #include "tests/support/ccd/exact_integer.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/random_stream.h"

@@ -2,7 +2,7 @@
  * any layout. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "src/mesh/views.h"
+#include "src/mesh/positions.h"
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"

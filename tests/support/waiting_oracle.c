@@ -1,7 +1,7 @@
 /* Which pairs wait after changes of what is left out: lists of everything that touches, gone through one by one. */
 #include "tests/support/waiting_oracle.h"
 
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "tests/support/intersections/grid_scene.h"
 
 #include "cscd/cscd.h"
-#include "src/mesh/triangle_intersection.h"
+#include "src/mesh/predicates.h"
 #include "tests/support/test.h"
 
 #include <string.h>
