@@ -31,14 +31,14 @@ static void open_planned(proof *p) {
 /* ---- checks --------------------------------------------------------------------------------------------- */
 
 static void read_check(proof *p) {
-    const cscd_intersections *c = &p->answer.intersections;
+    const cscd_intersections *c = &p->answer.pairs;
     proof_add(p, &c->zero_area_triangles, sizeof c->zero_area_triangles);
     proof_add_items(p, c->items, c->count, sizeof *c->items);
 }
 
 static cscd_status check_at(proof *p, int moment) {
     cscd_view x;
-    return cscd_detector_check(p->detector, at_moment(p, moment, &x), &p->answer.intersections);
+    return cscd_detector_check(p->detector, at_moment(p, moment, &x), &p->answer.pairs);
 }
 
 static cscd_status check_start(proof *p) {
@@ -49,8 +49,8 @@ static cscd_status check_end(proof *p) {
     return check_at(p, 3);
 }
 
-static const proof_call start_check = {"detector_check", PROOF_ASKS, check_start, read_check};
-static const proof_call end_check = {"detector_check", PROOF_ASKS, check_end, read_check};
+static const proof_call start_check = {"detector_find_intersections", PROOF_ASKS, check_start, read_check};
+static const proof_call end_check = {"detector_find_intersections", PROOF_ASKS, check_end, read_check};
 
 /* ---- the table ------------------------------------------------------------------------------------------ */
 

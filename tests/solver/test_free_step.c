@@ -36,7 +36,8 @@ static rig make_flight(straight_motion *m) {
     return r;
 }
 
-static cscd_status fly(const rig *r, const straight_motion *m, double longest, wall *w, cscd_free_step *out) {
+static cscd_status fly_towards(const rig *r, const straight_motion *m, double longest, wall *w,
+                               cscd_free_step *out) {
     const step_quest quest = {r->context, 0.8, longest, test_wall, w};
     return free_step_find(&quest, m, reached, out);
 }
@@ -46,10 +47,10 @@ TEST(free_motions_are_whole_steps) {
     cscd_free_step out;
     rig r = make_flight(&m);
     wall nowhere = {.at = INFINITY};
-    expect_ok(fly(&r, &m, 1.0, &nowhere, &out));
+    expect_ok(fly_towards(&r, &m, 1.0, &nowhere, &out));
     assert_true(out.fraction == 1.0 && !out.limited && out.moved && nowhere.tests == 1);
     assert_memory_equal(reached, ends, shape.vertex_count * sizeof(double[3]));
-    expect_ok(fly(&r, &m, 0.25, &nowhere, &out));
+    expect_ok(fly_towards(&r, &m, 0.25, &nowhere, &out));
     assert_true(out.fraction == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
     rig_destroy(&r);
 }
@@ -60,13 +61,13 @@ TEST(limited_steps_end_before_the_wall) {
     rig r = make_flight(&m);
     for (double share = 0.9; share > 1e-6; share *= 0.1) {
         wall w = {.at = shape.x0[0] + share};
-        expect_ok(fly(&r, &m, 1.0, &w, &out));
+        expect_ok(fly_towards(&r, &m, 1.0, &w, &out));
         assert_true(out.limited && out.limit.a == 4 && out.limit.b == 9);
         assert_true(fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
         if (share > 0.4) continue;
         w.tests = 0; /* half of the motion at most, but times are still of the whole motion */
-        expect_ok(fly(&r, &m, 0.5, &w, &out));
+        expect_ok(fly_towards(&r, &m, 0.5, &w, &out));
         assert_true(out.limited && fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
     }
@@ -78,7 +79,7 @@ TEST(no_step_is_free_from_within) {
     cscd_free_step out = {.fraction = -1.0};
     rig r = make_flight(&m);
     wall w = {.at = shape.x0[0]};
-    assert_int_equal(fly(&r, &m, 1.0, &w, &out), CSCD_IN_CONTACT);
+    assert_int_equal(fly_towards(&r, &m, 1.0, &w, &out), CSCD_IN_CONTACT);
     assert_true(out.fraction == 0.0 && out.limited && w.tests < 10);
     assert_true(out.limit.a == 4 && out.limit.b == 9 && out.limit.toi == 0.0);
     rig_destroy(&r);

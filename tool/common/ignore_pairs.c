@@ -148,20 +148,20 @@ static bool rules_leave_out(const part_rules *rules, const uint32_t *a, uint32_t
 
 /* ---- pairs of triangles -------------------------------------------------------------------------------- */
 
-static bool append_pair(triangle_pair **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
+static bool append_pair(ignored_pair **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
     if (*count == *capacity) {
         size_t wider = *capacity == 0 ? 64 : *capacity * 2;
-        triangle_pair *grown = io_realloc(*items, wider * sizeof *grown);
+        ignored_pair *grown = io_realloc(*items, wider * sizeof *grown);
         if (grown == NULL) return false;
         *items = grown;
         *capacity = wider;
     }
-    (*items)[(*count)++] = a < b ? (triangle_pair){a, b} : (triangle_pair){b, a};
+    (*items)[(*count)++] = a < b ? (ignored_pair){a, b} : (ignored_pair){b, a};
     return true;
 }
 
 static int compare_pairs(const void *left, const void *right) {
-    const triangle_pair *l = left, *r = right;
+    const ignored_pair *l = left, *r = right;
     if (l->a != r->a) return l->a < r->a ? -1 : 1;
     return l->b < r->b ? -1 : l->b > r->b;
 }
@@ -280,7 +280,7 @@ static bool add_rest_pair(ignore_pairs *pairs, bool by_parts, const cscd_interse
                        found->b);
 }
 
-static bool list_contains(const triangle_pair *list, size_t count, uint32_t c, uint32_t d) {
+static bool list_contains(const ignored_pair *list, size_t count, uint32_t c, uint32_t d) {
     for (size_t i = 0; i < count; i++)
         if ((list[i].a == c && list[i].b == d) || (list[i].a == d && list[i].b == c)) return true;
     return false;
@@ -421,7 +421,7 @@ bool ignore_pairs_any(const ignore_pairs *pairs) {
     return pairs->triangle_count > 0 || pairs->component_count > 0 || rules_leave_out_any(&pairs->rules);
 }
 
-static size_t count_different(const triangle_pair *sorted, size_t count) {
+static size_t count_different(const ignored_pair *sorted, size_t count) {
     size_t different = 0;
     for (size_t i = 0; i < count; i++) different += i == 0 || compare_pairs(&sorted[i - 1], &sorted[i]) != 0;
     return different;

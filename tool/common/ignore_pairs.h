@@ -39,20 +39,20 @@ typedef struct ignore_options {
 bool ignore_options_any(const ignore_options *options);
 
 /* Two triangles, or two components. */
-typedef struct triangle_pair {
+typedef struct ignored_pair {
     uint32_t a, b;
-} triangle_pair;
+} ignored_pair;
 
 typedef struct ignore_pairs {
     const cscd_mesh *mesh;
     part_names parts;
     part_rules rules;
-    size_t rest_pairs;        /* of triangles that intersect or touch in the first frame, if that was asked */
-    triangle_pair *triangles; /* sorted by (a, b) */
+    size_t rest_pairs;       /* of triangles that intersect or touch in the first frame, if that was asked */
+    ignored_pair *triangles; /* sorted by (a, b) */
     size_t triangle_count, triangle_capacity;
-    triangle_pair *components; /* a <= b; few; sorted */
+    ignored_pair *components; /* a <= b; few; sorted */
     size_t component_count, component_capacity;
-    triangle_pair *separated; /* a < b: different components of which pairs of triangles are left out */
+    ignored_pair *separated; /* a < b: different components of which pairs of triangles are left out */
     size_t separated_count, separated_capacity;
 } ignore_pairs;
 

@@ -15,7 +15,7 @@ static uint64_t hash_build(void) {
                            sizeof layout);
 }
 
-static uint64_t hash_list(uint64_t hash, const triangle_pair *items, size_t count) {
+static uint64_t hash_list(uint64_t hash, const ignored_pair *items, size_t count) {
     return count > 0 ? provenance_hash(hash, items, count * sizeof *items) : hash;
 }
 

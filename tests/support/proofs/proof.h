@@ -77,7 +77,6 @@ typedef struct proof {
         cscd_line_search *line;
         cscd_event_tracker *tracker;
         cscd_contacts contacts;
-        cscd_intersections intersections;
         cscd_intersections pairs;
         cscd_proximities near;
         cscd_free_step step;
