@@ -40,6 +40,8 @@ def of_detector(detector: Any, function: Any, result: str, *positions: Any) -> C
     host, pointer, out = detector._host.handle, detector._detector, detector._at[result]
     if result == "proximities":
         return lambda: (function(host, pointer, *addresses, 0.12, 0, out), views)
+    if result == "intersections":
+        return lambda: (function(host, pointer, *addresses, None, out), views)
     return lambda: (function(host, pointer, *addresses, out), views)
 
 
@@ -61,7 +63,8 @@ def rows() -> List[Tuple[str, int, Call, Call]]:
     crossing = cscd.Detector(many)
     turned = rough * [1.0, 1.0, -1.0]
     vertices = np.random.default_rng(3).permuted(np.tile(np.arange(len(x)), (10_000, 1)), axis=1)[:, :4].copy()
-    check, step, near = library.cscdpy_detector_check, library.cscdpy_detector_step, library.cscdpy_detector_find_near
+    check, step, near = (library.cscdpy_detector_find_intersections, library.cscdpy_detector_step,
+                         library.cscdpy_detector_find_near)
     size = f"{len(faces):,} triangles"
     host = detector._host.handle
     pair = cscd.Detector(faces[:2])

@@ -70,7 +70,6 @@ _CALLS: Dict[str, List[Any]] = {
     "detector_create": [_p, _p, _p, POINTER(c_void_p)],
     "tracker_create": [_p, _p, POINTER(c_void_p)],
     "detector_step": [_p, _p, _p, _p],
-    "detector_check": [_p, _p, _p],
     "detector_find_intersections": [_p, _p, _p, _p],
     "detector_find_near": [_p, _p, _f64, _u32, _p],
     "detector_max_step": [_p, _p, _p, _p, _p],

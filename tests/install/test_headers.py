@@ -26,6 +26,14 @@ def test_what_is_made_from_headers():
     shell("tests/install/api_headers.py check")
 
 
+def test_python_calls_what_its_library_has():
+    """The calls of python/native that Python lists are those that stand there."""
+    listed = set(re.findall(r'"(?:cscdpy_)?(\w+)": ', (ROOT / "python/cscd/_prototypes.py").read_text()))
+    native = "\n".join(path.read_text() for path in (ROOT / "python/native").glob("*.c"))
+    found = re.findall(r"\b(?:(?:CALL|RESULT)_OF\((?!name\b)|cscdpy_(?!##))(\w+)(?=[,(])", native)
+    assert listed == set(found)
+
+
 def test_structs_can_grow():
     """No struct ends in padding, and the library is told the size of every one that may grow."""
     shell("tests/install/api_headers.py rules")
