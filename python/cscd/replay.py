@@ -13,10 +13,10 @@ from ._host import Handle, new_handle
 from ._library import address_of, copy_list, items_of, library, new_struct, structs
 from .detector import Detector
 from .errors import Error
-from .intersections import INTERSECTION_KINDS, Intersections, _Surface, collapsed_of, labels_of
+from .intersections import Intersections, _Surface, collapsed_of, labels_of
 from .mesh import Mesh
 from .questions import mesh_of
-from .results import Contacts, Events, copy_records
+from .results import Contacts, Events, INTERSECTION_KINDS, copy_records
 
 __all__ = ["Frame", "Replay", "replay"]
 

@@ -58,14 +58,14 @@ void result_buffer_free(cscd_context *context, result_buffer *buffer) {
     *buffer = (result_buffer){.capacity = 0};
 }
 
+/* ---- gathering ------------------------------------------------------------------------------------- */
+
 /* Up to this number, every lane gets room for all contacts; beyond it, for this number and twice its
  * share of all. */
 enum { CONTACTS_FOR_ALL = 4096 };
 
-/* One thread copies so many contacts at a time. */
+/* The number of contacts that one thread copies at a time. */
 enum { CONTACTS_PER_COPY = 4096 };
-
-/* ---- gathering ------------------------------------------------------------------------------------- */
 
 /* The number of contacts that a lane finds differs from run to run, so without this a lane might have to grow in an
  * interval that is like the ones before. found: the contacts of all lanes together. */

@@ -7,7 +7,7 @@
 
 /* ==== another mesh ========================================================================================= */
 
-/* All that depends on the mesh is made anew in a detector beside, and exchanged when nothing can fail any more. */
+/* A second detector gets all that depends on the mesh, and the two exchange it when nothing can fail any more. */
 typedef struct detector_move {
     cscd_detector *from, *to;
     const cscd_mesh_change *change;

@@ -18,7 +18,7 @@ static bool all_neutral(const given_rules *given) {
     return given->matrix == NULL;
 }
 
-/* The states of triangles at the start are kept, but for components that are not proven any more: no later step or
+/* The states of triangles at the start are kept, except in components that are not proven any more: no later step or
  * check looks at them, so what is known of them would go stale. */
 static void choose_never_culled(cscd_detector *d) {
     const pair_rules *rules = &d->config.pair_rules;

@@ -91,7 +91,7 @@ typedef struct kind_search {
     cscd_detector *detector;
     const double *positions;
     cscd_intersection_options options;
-    size_t longest;             /* the list may have so many pairs */
+    size_t longest;             /* the most pairs that the list may have */
     exclusions without_host;    /* what is left out but by the caller's function, for any thread */
     size_t of_kind[KIND_COUNT]; /* pairs that count */
     bool keeps;                 /* these pairs stay in the lanes */
@@ -189,7 +189,7 @@ static cscd_status find_first(kind_search *s) {
     return status;
 }
 
-/* Where more pairs are asked for than a list may have, the search cannot stop before that is known. */
+/* If the caller wants more pairs than a list may have, the search cannot stop before that is known. */
 static bool stops_early(const cscd_detector *d, const cscd_intersection_options *options) {
     size_t longest = options->answer == CSCD_ANSWER_LIST ? d->config.options.longest_list : 0;
     if (options->answer == CSCD_ANSWER_ANY) return true;

@@ -6,7 +6,7 @@
 
 /* ---- what culling learns ------------------------------------------------------------------------------- */
 
-/* Pairs are counted in one of so many intervals, since that takes a twentieth of the time where few are left. */
+/* One interval in this many counts pairs, since counting takes a twentieth of the time where few are left. */
 enum { INTERVALS_BETWEEN_COUNTS = 4 };
 
 void interval_begin_counting(detector_interval *iv, const culling_rules *rules, start_states *starts,

@@ -38,7 +38,8 @@ typedef struct detector_interval {
     double *earliest; /* the least toi of its contacts with itself, where only the earliest are wanted */
 
     uint32_t intervals; /* that the vertices have gone through */
-    bool counts_kept, lists_earliest;
+    bool counts_kept;   /* pairs are counted in this one */
+    bool lists_earliest;
     uint64_t passes;       /* its closing passes */
     size_t *contacts_seen; /* per lane: its first contacts that have been looked at for tainted triangles */
 } detector_interval;

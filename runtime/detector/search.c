@@ -102,7 +102,7 @@ void interval_search_run(interval_search *search, uint32_t lanes, parallel_task 
     }
 }
 
-/* A lane with a limit looks at it after so many pairs, which narrow_phase_test takes at once. */
+/* A lane with a limit looks at it after this many pairs, which narrow_phase_test takes at once. */
 enum { PAIRS_BETWEEN_LOOKS = 256 };
 
 /* Tests the rest of the batch. False: the lane is suspended before its end. */
@@ -370,7 +370,7 @@ static void test_ee(const swept_interval *interval, const uint32_t pair[2], cont
     narrow_phase_test_ee(interval, pair[0], pair[1], lane);
 }
 
-/* After so many candidates the host is asked whether to go on. */
+/* The host may cancel after this many candidates. */
 enum { CANDIDATES_AT_ONCE = 1024 };
 
 /* Tests a lane's share of both lists; the cursor counts the candidates of the two. */

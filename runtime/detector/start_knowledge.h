@@ -30,6 +30,7 @@ void rollback_free(cscd_context *context, rollback *r);
 void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees);
 void rollback_restore(const rollback *r, start_states *starts, bvh_rebuild *trees);
 
+/* What is known of the positions that the next interval begins at. */
 typedef struct start_knowledge {
     start_states starts;
     static_check check;

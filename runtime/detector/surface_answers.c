@@ -1,4 +1,4 @@
-/* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
+/* Answers about intersecting surfaces besides their pairs of triangles: curves, patches, overlaps, depths. */
 #include "runtime/detector/surface_answers.h"
 
 void surface_answers_free(cscd_context *context, surface_answers *a) {

@@ -1,4 +1,4 @@
-/* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
+/* Answers about intersecting surfaces besides their pairs of triangles: curves, patches, overlaps, depths. */
 #pragma once
 
 #include "runtime/depths/depths.h"
@@ -7,7 +7,7 @@
 
 /* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
 typedef struct surface_answers {
-    size_t kept; /* so many bytes from one call to the next */
+    size_t kept; /* bytes, from one call to the next */
     left_out_pairs left_out;
     placed_names names;
     curve_joiner joiner;
@@ -24,7 +24,7 @@ typedef struct surface_answers {
     cscd_depths depths;
 } surface_answers;
 
-/* The surfaces that are asked about. */
+/* The surfaces that answers are about. */
 typedef struct surface_scene {
     const detector_config *config;
     search_space *space; /* whose trees are at the positions */
@@ -50,8 +50,8 @@ cscd_status surface_answers_find(surface_answers *a, const surface_scene *scene,
 /* Something did not fit the budget: says so in *found, and goes on. */
 void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_intersections *found);
 
-/* The pairs do not fit, and so is all left out that was asked for. */
+/* Leaves out all that the options ask for, since the pairs themselves do not fit. */
 void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersections *found);
 
-/* Gives back what is kept from one call to the next, if that is more than so many bytes. */
+/* Gives back what is kept from one call to the next, if that exceeds a number of bytes. */
 void surface_answers_shrink(cscd_context *context, surface_answers **answers, size_t most);

@@ -13,7 +13,7 @@ typedef struct settling {
     const waiting_place *at;
     const double *x;
     interval_search search; /* at rest */
-    exclusions others;      /* without the caller's function, which is asked about lists only */
+    exclusions others;      /* without the caller's function, which decides about lists only */
     named_pair_set *set;
     bool touching; /* distances do not count */
 } settling;
@@ -32,7 +32,7 @@ static settling settle_at(const waiting_place *at, const double *x, named_pair_s
 
 /* ---- pairs that wait already ---------------------------------------------------------------------------- */
 
-/* One thread looks at so many pairs at a time. */
+/* The number of pairs that one thread looks at at a time. */
 enum { PAIRS_PER_TASK = 1024 };
 
 static bool is_left_out(const settling *s, const named_pair *pair) {

@@ -77,12 +77,6 @@ static cscd_status check_method(const cscd_detector *d) {
                         d->config.traits->name);
 }
 
-static cscd_status reserve_reached(cscd_detector *d) {
-    if (d->reached == NULL)
-        d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
-    return d->reached != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
-}
-
 /* Withdraws what a failed call has tried, and passes the status on. */
 static cscd_status fail_tries(const tries *t, cscd_status status) {
     if (t->any) step_withdraw(t->detector);
@@ -99,7 +93,7 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_
     const waiting_place waiting = detector_waiting_place(d);
     status = waiting_settle(&waiting, m->x0);
     if (status == CSCD_OK) status = waiting_only_touching(&waiting, m->x0);
-    if (status == CSCD_OK) status = reserve_reached(d);
+    if (status == CSCD_OK) status = solver_reserve_reached(d);
     const step_quest quest = {d->context, d->config.options.step_factor, 1.0, try_motion, &t};
     if (status == CSCD_OK) status = free_step_find(&quest, m, d->reached, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);

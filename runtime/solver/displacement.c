@@ -63,8 +63,7 @@ static void *pair_scratch(cscd_detector *d, size_t count, size_t size) {
     return grown;
 }
 
-/* Makes room for the positions that a call reaches. */
-static cscd_status reserve_reached(cscd_detector *d) {
+cscd_status solver_reserve_reached(cscd_detector *d) {
     if (d->reached == NULL)
         d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
     return d->reached != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -192,7 +191,7 @@ static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double sea
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     const waiting_place waiting = detector_waiting_place(d);
-    status = reserve_reached(d);
+    status = solver_reserve_reached(d);
     if (status == CSCD_OK) status = waiting_settle(&waiting, x0);
     if (status == CSCD_OK) status = find_bounds(d, x0, search_radius, scalar, d->reached, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);
@@ -249,7 +248,7 @@ typedef struct truncation_work {
     double farthest; /* that a vertex may go, so that pairs that are not near stay apart */
     double *end;
     double *shares; /* per vertex: of its motion, up to the first plane; at last what it goes */
-    size_t *tries;  /* per vertex: so many of them did not fit */
+    size_t *tries;  /* per vertex: how many of them did not fit */
 } truncation_work;
 
 /* ---- one vertex ---------------------------------------------------------------------------------------- */
@@ -500,7 +499,7 @@ static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motio
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     const waiting_place waiting = detector_waiting_place(d);
-    status = reserve_reached(d);
+    status = solver_reserve_reached(d);
     if (status == CSCD_OK) status = waiting_settle(&waiting, motion->x0);
     if (status == CSCD_OK) status = waiting_only_touching(&waiting, motion->x0);
     if (status == CSCD_OK) status = find_truncation(d, motion, search_radius, d->reached, out);

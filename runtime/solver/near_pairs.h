@@ -10,7 +10,7 @@ typedef struct near_rules {
     const detector_config *config;
 } near_rules;
 
-/* Pairs are worked on in shares of so many, and vertices as well. */
+/* The number of pairs, and of vertices, that one thread takes at a time. */
 enum { NEAR_PAIRS_PER_SHARE = 1024, VERTICES_PER_SHARE = 4096 };
 
 /* The distance that the pair must keep: 0, the detector's separation, or that of the rules for its objects. */

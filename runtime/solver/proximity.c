@@ -102,8 +102,8 @@ static double crossing_of(const proximity_scene *scene, uint32_t a, uint32_t b) 
     return vec3_dot(across, across);
 }
 
-/* A crossing that overflows is above every threshold; one that underflows is below every threshold that is not 0. */
-/* Are these two edges so nearly parallel that the mollifier of their energy is below 1? */
+/* True if two edges are so nearly parallel that the mollifier of their energy is below 1. A crossing that overflows is above
+ * every threshold; one that underflows is below every threshold that is not 0. */
 static bool edges_mollified(const proximity_scene *scene, uint32_t a, uint32_t b) {
     double threshold = edge_rest_threshold(scene->rest, a, b);
     return threshold > 0.0 && crossing_of(scene, a, b) < threshold;
@@ -111,7 +111,16 @@ static bool edges_mollified(const proximity_scene *scene, uint32_t a, uint32_t b
 
 /* ---- without repetitions ------------------------------------------------------------------------------- */
 
-/* One thread names, or describes, so many at a time. */
+/* Pairs of features whose nearest points lie on the same two vertices, or on the same edge and vertex, become one item that
+ * counts them.
+ *
+ * The distance of such a pair is that of the two parts, so a sum of energies that depend on the distance alone is the same
+ * over all pairs and over the items, each times its count. The energy of two edges may have a mollifier besides, a factor that
+ * depends on both edges and is below 1 while they are nearly parallel (Li et al. 2020, eq. 24). Such edges are an item of their
+ * own, wherever their nearest points lie; all others have the factor 1. Where a pair passes from one to the other its factor is
+ * 1, too, so the sum goes on without a jump. */
+
+/* The number of pairs that one thread names or describes at a time. */
 enum { PAIRS_PER_SHARE = 4096 };
 
 /* A pair by the parts that its nearest points lie on. VV: a < b; EV: the edge a and the vertex b. */
@@ -237,9 +246,8 @@ static void run_shares(cscd_context *context, size_t count, parallel_task *task,
 /* The sorted keys leave their spare ones free for the begins of groups. */
 _Static_assert(sizeof(size_t) < sizeof(name_key), "the spare keys have room for one more begin than pairs");
 
-/* Merges `count` pairs, given by keys, into items, so that those whose nearest points lie on the same two vertices, or on the same
- * edge and vertex, become one item that counts them. *unique says how many there are.
- * They are sorted by (kind, a, b), and the same for any order of the keys. scratch is grown and kept. */
+/* Merges `count` pairs, given by keys, into items. *unique says how many there are. They are sorted by (kind, a, b), and the
+ * same for any order of the keys. scratch is grown and kept. */
 static cscd_status unique_pairs_list(cscd_context *context, const proximity_scene *scene,
                                      const contact_key *keys, size_t count, result_buffer *scratch,
                                      cscd_proximity *items, size_t *unique) {

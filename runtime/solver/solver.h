@@ -23,6 +23,9 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
 cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_near_form form,
                            cscd_proximities *out);
 
+/* Makes room for the positions that a call reaches, d->reached. */
+cscd_status solver_reserve_reached(cscd_detector *d);
+
 /* ---- certified steps ----------------------------------------------------------------------------------- */
 
 /* Finds the longest step of a motion that is certified free of contact, by the stages of a step. The motion's
