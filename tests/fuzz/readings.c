@@ -21,7 +21,7 @@ static void insist_on(bool held, const char *what) {
     abort();
 }
 
-static bool read_frames(const char *path, const mesh_file *model, io_error *error) {
+static bool read_frames_of(const char *path, const mesh_file *model, io_error *error) {
     animation *frames;
     if (!animation_open(&path, 1, model->vertex_count, NULL, &frames, error)) return false;
     double *positions = malloc(3 * sizeof *positions * model->vertex_count);
@@ -48,7 +48,7 @@ static bool read_mesh(const char *path, const mesh_file *model, io_error *error)
     for (size_t i = 0; i < 3 * (size_t)mesh.triangle_count; i++)
         insist_on(mesh.triangles[i] < mesh.vertex_count, "a corner is no vertex");
     io_error no_frames = {""};
-    if (mesh.format == MESH_FORMAT_GLTF) read_frames(path, &mesh, &no_frames);
+    if (mesh.format == MESH_FORMAT_GLTF) read_frames_of(path, &mesh, &no_frames);
     mesh_file_free(&mesh);
     return true;
 }
@@ -153,8 +153,8 @@ static const reading readings[] = {{"plan", ".plan.ply", read_plan, true, 100},
                                    {"gltf", ".gltf", read_mesh, false, 100},
                                    {"gltf", ".glb", read_mesh, false, 100},
                                    {"gifti", ".gii", read_mesh, false, 10000},
-                                   {"pc2", ".pc2", read_frames, true, 100},
-                                   {"mdd", ".mdd", read_frames, true, 100},
+                                   {"pc2", ".pc2", read_frames_of, true, 100},
+                                   {"mdd", ".mdd", read_frames_of, true, 100},
                                    {"summary", ".summary.json", read_summary, false, 100},
                                    {"jobs", ".jobs.jsonl", read_jobs, false, 100},
                                    {"results", ".results.jsonl", read_results, false, 100}};
