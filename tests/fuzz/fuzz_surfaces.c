@@ -30,8 +30,8 @@ static void show_difference(const char *problem, grid_family family, trial_sprea
 static void print_totals(uint64_t differences, uint64_t seed) {
     const trial_totals *sum = &trial.totals;
     printf(
-        "%llu scenes, seed %llu: %llu events (%llu at an end of their edge), %llu pieces, %llu curves (%llu open)\n",
-        (unsigned long long)sum->scenes, (unsigned long long)seed, (unsigned long long)sum->events,
+        "%llu scenes, seed %llu: %llu piercings (%llu at an end of their edge), %llu pieces, %llu curves (%llu open)\n",
+        (unsigned long long)sum->scenes, (unsigned long long)seed, (unsigned long long)sum->piercings,
         (unsigned long long)sum->degenerate, (unsigned long long)sum->pieces, (unsigned long long)sum->curves,
         (unsigned long long)sum->open_curves);
     printf(
