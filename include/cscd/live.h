@@ -124,7 +124,7 @@ typedef struct cscd_waiting {
     size_t triangles; /* pairs of triangles, left out of intersections */
 } cscd_waiting;
 
-/* Returns how many pairs wait since the last call that was given positions. */
+/* Returns how many pairs wait as of the last call, also of a line search or a failed one, that looked at positions. */
 CSCD_API cscd_waiting cscd_detector_waiting(const cscd_detector *detector);
 
 /* Replaces seams (see the options) from the next call on. For them seam_reach holds at the first positions

@@ -502,10 +502,10 @@ typedef struct cscd_intersections {
     uint64_t wanted_work;
 } cscd_intersections;
 
-/* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The
- * pairs are proven in docs/theory/static-check.md; of points, wires and half-spaces they say nothing. Pairs
- * are left out as docs/solver/guarantees.md says, but a duplicate whose triangles have the same three indices never waits. Unless the answer is ANY or
- * stop_after is set, a step that starts here need not check the positions again. Of the timings only check_ms
+/* Lists exactly the triangle pairs that intersect or touch at the given positions, and how
+ * (docs/theory/static-check.md); of points, wires and half-spaces it says nothing. options may be NULL. Pairs are
+ * left out as docs/solver/guarantees.md says, but a duplicate with the same three indices never waits. Unless
+ * the answer is ANY or stop_after is set, a step that starts here need not check the positions again. Of the timings only check_ms
  * changes; counters stay. docs/solver/surfaces.md has a program.
  *
  * INVALID_ARGUMENT: no kind counts, or an option is out of its range. LIST_TOO_LONG: the list would be longer
@@ -515,7 +515,7 @@ CSCD_API cscd_status cscd_detector_find_intersections(cscd_detector *detector, c
                                                       const cscd_intersection_options *options,
                                                       cscd_intersections *out);
 
-/* Lists the triangle pairs that intersect or touch at the given positions: the same with the defaults. */
+/* Calls cscd_detector_find_intersections with the default options. */
 static inline cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
                                               cscd_intersections *out) {
     return cscd_detector_find_intersections(detector, positions, NULL, out);
