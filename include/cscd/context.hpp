@@ -308,6 +308,9 @@ class context {
     cscd_context_info info() const noexcept {
         return cscd_context_describe(get());
     }
+    std::size_t memory_share() const noexcept {
+        return cscd_context_memory_share(get());
+    }
     /* Ends the call that is running, with CSCD_CANCELLED; from another thread. */
     void cancel() const noexcept {
         cscd_context_cancel(get());

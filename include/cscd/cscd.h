@@ -37,10 +37,11 @@
  *               and threads use it, and call its functions, at once. A calling thread needs 256 KiB of stack.
  *               cscd/detector.h has the rules of callbacks and of fork
  *   errors      functions that can fail return cscd_status, and write *out only with CSCD_OK, or with
- *               CSCD_LIST_TOO_LONG how long the list would be. cscd_context_detail() then says what is wrong, where, and what to do. All may return
- *               CSCD_INVALID_ARGUMENT, CSCD_OUT_OF_MEMORY and, if an object is NULL, CSCD_NULL_OBJECT,
- *               without a sentence if that object had the context; functions name further ones. Objects stay
- *               valid after a failure, and the call may be repeated
+ *               CSCD_LIST_TOO_LONG how long the list would be. cscd_context_detail() then says what is wrong,
+ *               where, and what to do. All may return CSCD_INVALID_ARGUMENT, CSCD_OUT_OF_MEMORY and, if an
+ *               object is NULL, CSCD_NULL_OBJECT, without a sentence if that object had the context;
+ *               functions name further ones. Objects stay valid after a failure, and the call may be
+ *               repeated
  *   unchecked   functions without a cscd_status check nothing: give them a valid object and indices below its
  *               counts
  *   defaults    options come from the _defaults() function and are then changed; {0} is refused. NULL options

@@ -42,13 +42,15 @@ CSCD_API const char *cscd_status_string(cscd_status status);
 /* The enumerations whose values have names. */
 typedef enum cscd_enumeration {
     CSCD_SIMDS,   /* cscd_simd: "auto", "scalar", "avx2", "avx512", "neon" */
-    CSCD_METHODS, /* cscd_method: "auto", "none", "single", "kmeans", "charge", and those of cscd/research.h */
+    CSCD_METHODS, /* cscd_method: "auto", "none", "single", "kmeans", "charge"; more in cscd/research.h */
     CSCD_MODES,   /* cscd_mode: "all", "earliest" */
     CSCD_VOLUMES, /* cscd_volume: "box", "kdop14" */
     CSCD_REASONS, /* cscd_reason: a part of a sentence, as "open, non-manifold or inconsistently oriented" */
     CSCD_CONTACT_KINDS, /* cscd_contact_kind: "vf", "ee", "tt", "vv", "ev", "vh" */
-    CSCD_INTERSECTION_KINDS, /* cscd_intersection_kind: "crossing", "coplanar", "folded", "duplicate", "touching" */
-    CSCD_LEFT_OUTS, /* cscd_left_out: "pairs", "curves", "patches", "overlaps", "cut-offs", "depths", "parts" */
+    /* cscd_intersection_kind: "crossing", "coplanar", "folded", "duplicate", "touching" */
+    CSCD_INTERSECTION_KINDS,
+    /* cscd_left_out: "pairs", "curves", "patches", "overlaps", "cut-offs", "depths", "parts" */
+    CSCD_LEFT_OUTS,
     CSCD_CURVE_ENDS, /* cscd_curve_end: "none", "vertex", "border", "junction", "left out" */
     CSCD_ENUMERATION_MAX_ENUM = 0x7fffffff
 } cscd_enumeration;
@@ -168,11 +170,15 @@ typedef struct cscd_context_info {
     uint32_t thread_count; /* that share long work; with parallel_for the number of tasks */
     cscd_simd simd;        /* the instruction set in use, never AUTO */
     size_t bytes;          /* that the context and its objects hold now through the allocator */
-    size_t memory_share;   /* in bytes, what a max_memory of 0 stands for: a quarter of the free memory */
+    uint64_t reserved[4];  /* 0 */
 } cscd_context_info;
 
 /* Tells what the context works with, and how much memory it holds. */
 CSCD_API cscd_context_info cscd_context_describe(const cscd_context *context);
+
+/* Returns what a max_memory of 0 stands for: a quarter of the memory that the system has free now, in
+ * bytes. */
+CSCD_API size_t cscd_context_memory_share(const cscd_context *context);
 
 /* ==== Positions ============================================================================================= */
 
@@ -194,7 +200,7 @@ typedef enum cscd_scalar { CSCD_SCALAR_DOUBLE, CSCD_SCALAR_FLOAT } cscd_scalar;
  *     const cscd_view positions[2] = {
  *         {cloth, sizeof cloth, sizeof cloth[0], 0, CSCD_SCALAR_FLOAT, 1},
  *         {floor, sizeof floor, sizeof(double), sizeof floor[0], CSCD_SCALAR_DOUBLE, 1}};
- *     cscd_intersections found;
+ *     cscd_intersections found; // cscd/surface.h
  *     cscd_status status = cscd_detector_check(detector, positions, &found);
  *     if (status == CSCD_OK) printf("%zu pairs intersect\n", found.count);
  */
@@ -477,7 +483,7 @@ typedef enum cscd_mode {
 typedef enum cscd_start {
     CSCD_START_PROVE,   /* the step checks the triangles that are not known to be clean */
     CSCD_START_VOUCHED, /* you say that every start is embedded; if not, contacts may be lost */
-    CSCD_START_UNKNOWN, /* only what a cscd_detector_check of the start has shown to be clean is culled */
+    CSCD_START_UNKNOWN, /* only what cscd_detector_find_intersections has shown clean is culled */
     CSCD_START_MAX_ENUM = 0x7fffffff
 } cscd_start;
 
@@ -591,7 +597,8 @@ typedef struct cscd_detector_options {
 
     /* The most items of a list of contacts, intersections or proximities; 0, the default: any number. A
      * longer one fails with LIST_TOO_LONG and changes nothing; *out then has no items, but their number.
-     * EARLIEST drops later contacts of a component with itself instead. In the form CSCD_NEAR_UNIQUE it
+     * EARLIEST drops later contacts of a component with itself instead. It does not bound what max_memory
+     * (cscd_intersection_options) bounds. In the form CSCD_NEAR_UNIQUE it
      * bounds the pairs behind the items, in displacement bounds and truncation the near pairs. */
     size_t longest_list;
 
@@ -608,8 +615,8 @@ static inline cscd_detector_options cscd_detector_defaults(void) {
     return options;
 }
 
-/* Creates a detector. It allocates from `context` and fails into it; the mesh may be of another one. plan is of
- * the same mesh, or NULL: CHARGE and KMEANS need one of their kind, the others take any or none. */
+/* Creates a detector. It allocates from `context` and fails into it; the mesh may be of another one. plan is
+ * of the same mesh, or NULL: CHARGE and KMEANS need one of their kind, the others take any or none. */
 CSCD_API cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 
@@ -689,9 +696,10 @@ typedef struct cscd_guarantee {
  * between two components are always complete. */
 CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
 
-/* Tells whether the component was collapsed in the last cscd_detector_find_intersections, or at an end of the last step: all corners of
- * each of its triangles were on one line, exactly. docs/solver/guarantees.md says what is not looked for
- * then. False before the first call, and for a component that the mesh does not have. */
+/* Tells whether the component was collapsed at the positions that the last step, max_step or
+ * cscd_detector_find_intersections looked at, also a failed one: all corners of each of its triangles were on
+ * one line, exactly. docs/solver/guarantees.md says what is not looked for then. False before the first call,
+ * and for a component that the mesh does not have. */
 CSCD_API bool cscd_detector_collapsed(const cscd_detector *detector, uint32_t component);
 
 /* The milliseconds of each stage of the last step. */
@@ -713,7 +721,7 @@ typedef struct cscd_counters {
     uint64_t clean;            /* triangles that were clean at the start */
     uint64_t rebuilds;         /* 1 if loose trees were built again, else 0 */
     uint64_t passes;           /* further traversals, for pairs uncovered by contacts */
-    uint64_t plus, minus;      /* triangles that are S+, and S-: cscd_detector_orientation */
+    uint64_t plus, minus;      /* S+, and S-: triangles that face away, and towards (cscd/research.h) */
     uint64_t contours, sealed; /* ICCD, CONES: contour tests, and patches left out after theirs */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared */
     uint64_t pcp;              /* triangle pairs whose volumes overlap */

@@ -96,12 +96,12 @@ CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, siz
 /* ---- what is left out, on a live detector ----------------------------------------------------------------
  *
  * A pair that such a change uncovers while it touches, or is within its distance, waits: it is left out until
- * it is farther apart than that in x0 of a call or in positions of cscd_detector_check
+ * it is farther apart than that in x0 of a call or in positions of cscd_detector_find_intersections
  * (docs/solver/guarantees.md). The first positions given after the change decide. But cscd_detector_max_step,
  * cscd_line_search_max_step and cscd_detector_truncate leave out only what touches at x0; other waiting pairs
- * keep their floors. In the check, pairs of triangles wait while they intersect or touch. A pair that a later change leaves out waits no more. If the answers of `ignore` change, no
- * pair waits. An example, the second sheet on the first one, sewn to it, then torn off, which prints "0
- * contacts, pairs wait":
+ * keep their floors. Pairs of triangles wait while they intersect or touch. A pair that a later change leaves
+ * out waits no more. If the answers of `ignore` change, no pair waits. An example, the second sheet on the
+ * first one, sewn to it, then torn off, which prints "0 contacts, pairs wait":
  *
  *     uint32_t seams[SHEET][2];
  *     for (uint32_t v = 0; v < SHEET; v++) {
@@ -124,7 +124,8 @@ typedef struct cscd_waiting {
     size_t triangles; /* pairs of triangles, left out of intersections */
 } cscd_waiting;
 
-/* Returns how many pairs wait as of the last call, also of a line search or a failed one, that looked at positions. */
+/* Returns how many pairs wait since the last call that looked at positions, also of a line search, and also
+ * if it failed. */
 CSCD_API cscd_waiting cscd_detector_waiting(const cscd_detector *detector);
 
 /* Replaces seams (see the options) from the next call on. For them seam_reach holds at the first positions
@@ -156,8 +157,8 @@ CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd
  * A feature is active if one of its vertices is, and a half-space if its point is. All other vertices must
  * stay where they are: otherwise a call with two positions fails with INVALID_ARGUMENT and names the first,
  * also where max_step would round one to floats. Pairs without an active feature are in no list and stop no
- * motion; "complete" speaks of the others, which are reported as ever, bit for bit. In cscd_detector_check
- * the features are triangles.
+ * motion; "complete" speaks of the others, which are reported as ever, bit for bit. In
+ * cscd_detector_find_intersections the features are triangles.
  *
  *   starts        steps prove the whole start, once; a check leaves open what it did not compare
  *   bounds        of other vertices are those of their pairs with active features
@@ -171,7 +172,8 @@ CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd
  *     memcpy(x1, x0, sizeof x0);
  *     x1[3 * pulled + 2] += 1.0;
  *     cscd_status status = cscd_detector_set_active(detector, &pulled, 1);
- *     if (status == CSCD_OK) status = cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts);
+ *     if (status == CSCD_OK)
+ *         status = cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts);
  *     if (status == CSCD_OK) status = cscd_detector_set_active(detector, NULL, 0);
  *     printf("%d contacts\n", (int)contacts.count);
  */

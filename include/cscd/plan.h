@@ -97,7 +97,8 @@ typedef struct cscd_plan_parts {
  *     const double points[3] = {0.2, 0.2, 0.2};
  *     const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, points, NULL, NULL, NULL};
  *     cscd_plan *plan = NULL;
- *     if (cscd_plan_create_from_parts(context, tetrahedron, CSCD_DOUBLES(corners, 4), &parts, &plan) == CSCD_OK)
+ *     const cscd_view *rest = CSCD_DOUBLES(corners, 4);
+ *     if (cscd_plan_create_from_parts(context, tetrahedron, rest, &parts, &plan) == CSCD_OK)
  *         printf("%.1f of the region is seen\n", cscd_plan_region(plan, 0).visible_share);
  *     cscd_plan_destroy(plan);
  */
@@ -139,7 +140,8 @@ typedef struct cscd_preprocess_timings {
 /* Returns how long each stage of cscd_plan_create took. */
 CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
 
-/* What a plan is, and how it was made. The names of kernels live as long as OpenBLAS and the library are loaded. */
+/* What a plan is, and how it was made. The names of kernels live as long as OpenBLAS and the library are
+ * loaded. */
 typedef struct cscd_plan_info {
     cscd_method method;      /* that made the regions: CHARGE, KMEANS, SINGLE or PUBLISHED */
     uint32_t region_count;   /* of all components together */

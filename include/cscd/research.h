@@ -56,10 +56,9 @@ typedef struct cscd_method_info {
     bool needs_plan;     /* a detector needs a plan that was made by it */
     bool loses_contacts; /* it follows published rules that lose contacts */
     bool available;      /* this build has it: baselines can be left out */
-    bool
-        by_orientation; /* culls by orientation, so it takes a plan and gains from one; AUTO: where that pays */
-    bool by_contours;   /* culls by normal cones and contours */
-    bool by_charge;     /* its plans have the charge of each triangle */
+    bool by_orientation; /* culls by orientation, so a plan makes it faster; AUTO: where that pays */
+    bool by_contours;    /* culls by normal cones and contours */
+    bool by_charge;      /* its plans have the charge of each triangle */
     uint8_t reserved[1]; /* 0 */
 } cscd_method_info;
 

@@ -170,7 +170,7 @@ typedef struct cscd_displacement_bounds {
  *             way[c] = x1[3 * v + c] - x0[3 * v + c];
  *             length += way[c] * way[c];
  *         }
- *         if (sqrt(length) > bounds[v]) share = (1.0 - 1e-12) * bounds[v] / sqrt(length); // and never beyond it
+ *         if (sqrt(length) > bounds[v]) share = (1.0 - 1e-12) * bounds[v] / sqrt(length);
  *         for (int c = 0; c < 3; c++) reached[3 * v + c] = x0[3 * v + c] + share * way[c];
  *     }
  *     free(bounds);

@@ -503,10 +503,10 @@ typedef struct cscd_intersections {
 } cscd_intersections;
 
 /* Lists exactly the triangle pairs that intersect or touch at the given positions, and how
- * (docs/theory/static-check.md); of points, wires and half-spaces it says nothing. options may be NULL. Pairs are
- * left out as docs/solver/guarantees.md says, but a duplicate with the same three indices never waits. Unless
- * the answer is ANY or stop_after is set, a step that starts here need not check the positions again. Of the timings only check_ms
- * changes; counters stay. docs/solver/surfaces.md has a program.
+ * (docs/theory/static-check.md); of points, wires and half-spaces it says nothing. options may be NULL. Pairs
+ * are left out as docs/solver/guarantees.md says, but a duplicate with the same three indices never waits.
+ * Unless the answer is ANY or stop_after is set, a step that starts here need not check the positions again.
+ * Of the timings only check_ms changes; counters stay. docs/solver/surfaces.md has a program.
  *
  * INVALID_ARGUMENT: no kind counts, or an option is out of its range. LIST_TOO_LONG: the list would be longer
  * than longest_list, or than fits max_memory; *out then counts all pairs, whatever stop_after is, and has no

@@ -24,9 +24,18 @@ cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, 
     return CSCD_OK;
 }
 
-cscd_status result_buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
+/* Gives back what only sorting needs; the items stay. */
+static void buffer_free_keys(cscd_context *context, result_buffer *buffer) {
+    context_free(context, buffer->keys);
+    context_free(context, buffer->spare_keys);
+    buffer->keys = buffer->spare_keys = NULL;
+}
+
+/* The room of a long list is made in two steps, so that whoever fills it may give back other memory in between: items that
+ * hold anything, and then the keys, just enough of them. */
+static cscd_status buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
                                         size_t item_size) {
-    result_buffer_free_keys(context, buffer);
+    buffer_free_keys(context, buffer);
     if (count <= buffer->capacity) return CSCD_OK;
     result_buffer_free(context, buffer);
     const size_t room = room_with_spare(count);
@@ -36,25 +45,19 @@ cscd_status result_buffer_reserve_items(cscd_context *context, result_buffer *bu
     return CSCD_OK;
 }
 
-cscd_status result_buffer_reserve_keys(cscd_context *context, result_buffer *buffer, size_t count,
+static cscd_status buffer_reserve_keys(cscd_context *context, result_buffer *buffer, size_t count,
                                        size_t key_size) {
-    result_buffer_free_keys(context, buffer);
+    buffer_free_keys(context, buffer);
     buffer->keys = context_reserve(context, count, key_size);
     buffer->spare_keys = context_reserve(context, count, key_size);
     if (buffer->keys != NULL && buffer->spare_keys != NULL) return CSCD_OK;
-    result_buffer_free_keys(context, buffer);
+    buffer_free_keys(context, buffer);
     return CSCD_OUT_OF_MEMORY;
-}
-
-void result_buffer_free_keys(cscd_context *context, result_buffer *buffer) {
-    context_free(context, buffer->keys);
-    context_free(context, buffer->spare_keys);
-    buffer->keys = buffer->spare_keys = NULL;
 }
 
 void result_buffer_free(cscd_context *context, result_buffer *buffer) {
     context_free(context, buffer->items);
-    result_buffer_free_keys(context, buffer);
+    buffer_free_keys(context, buffer);
     *buffer = (result_buffer){.capacity = 0};
 }
 
@@ -130,8 +133,7 @@ static size_t move_lane(cscd_context *context, contact_lane *lane, const exclusi
 
 /* The same for long lists, which are never there twice: the keys name places of the items. */
 static cscd_status gather_long(search_space *s, const exclusions *e, result_buffer *buffer, size_t *count) {
-    cscd_status status =
-        result_buffer_reserve_items(s->context, buffer, count_found(s), sizeof(cscd_contact));
+    cscd_status status = buffer_reserve_items(s->context, buffer, count_found(s), sizeof(cscd_contact));
     if (status != CSCD_OK) return status;
     cscd_contact *items = buffer->items;
     size_t kept = 0;
@@ -141,7 +143,7 @@ static cscd_status gather_long(search_space *s, const exclusions *e, result_buff
     }
     *count = s->counted + kept;
     if (is_too_long(s, *count)) return CSCD_LIST_TOO_LONG;
-    status = result_buffer_reserve_keys(s->context, buffer, kept, sizeof(contact_key));
+    status = buffer_reserve_keys(s->context, buffer, kept, sizeof(contact_key));
     if (status != CSCD_OK) return status;
     contact_key *keys = buffer->keys;
     for (size_t i = 0; i < kept; i++) keys[i].contact = &items[i];
@@ -246,7 +248,7 @@ cscd_status contact_list_collect(search_space *s, const exclusions *e, result_bu
     if (count > 1) sort_contacts(keys, buffer->spare_keys, count);
     if (is_long) {
         permute_items(keys, buffer->items, count);
-        result_buffer_free_keys(s->context, buffer);
+        buffer_free_keys(s->context, buffer);
     }
     sorted_contacts sorted = {s->mesh, is_long ? NULL : keys, buffer->items, count};
     uint32_t copies = (uint32_t)((count + CONTACTS_PER_COPY - 1) / CONTACTS_PER_COPY);

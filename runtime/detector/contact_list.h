@@ -15,15 +15,6 @@ typedef struct result_buffer {
 cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count,
                                   size_t item_size, size_t key_size);
 
-/* The same for a long list in two steps, so that whoever fills it may give back other memory in between: items that hold
- * anything, and then the keys, just enough of them. */
-cscd_status result_buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
-                                        size_t item_size);
-cscd_status result_buffer_reserve_keys(cscd_context *context, result_buffer *buffer, size_t count,
-                                       size_t key_size);
-
-/* Gives back what only sorting needs; the items stay. */
-void result_buffer_free_keys(cscd_context *context, result_buffer *buffer);
 void result_buffer_free(cscd_context *context, result_buffer *buffer);
 
 /* ---- contacts ------------------------------------------------------------------------------------------ */

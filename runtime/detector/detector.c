@@ -532,6 +532,8 @@ static const char *check_parts(const cscd_detector *d) {
     if (!(d->config.limit.distance >= 0.0) || !(d->config.limit.tolerance >= 0.0) ||
         d->config.limit.distance != d->config.options.min_separation)
         return "the distance of a detector is not that of its options";
+    if (d->interval.cap.longest != d->config.options.longest_list)
+        return "the cap of a detector's lists is not that of its options";
     return NULL;
 }
 

@@ -15,8 +15,8 @@ typedef struct list_cap {
     size_t longest; /* of the options; 0: there is no limit */
     bool *tainted;  /* per triangle: by contacts that have left the lanes; NULL: there never was a limit */
     bool any_tainted;
-    size_t beside; /* the room of a lane besides its share of the limit */
-    cap_taint taint;
+    size_t beside;   /* the room of a lane besides its share of the limit */
+    cap_taint taint; /* which contacts that leave the lanes taint, in this search */
 } list_cap;
 
 typedef struct detector_interval {

@@ -240,7 +240,8 @@ static void test_half_spaces(void *data, uint32_t index) {
     half_spaces_test(&search->interval, index, search->space->traversal.lane_count, lane);
 }
 
-void interval_search_half_spaces(interval_search *search) {
+/* Tests all vertices against the half-spaces. */
+static void search_half_spaces(interval_search *search) {
     if (search->space->mesh->loose.half_space_count > 0)
         interval_search_run(search, search->space->traversal.lane_count, test_half_spaces, search);
 }
@@ -253,7 +254,7 @@ cscd_status interval_search_loose(interval_search *search) {
     timer_lap(&since, &search->timings.update_ms);
     progress_stage(&space->context->progress, "loose features", 0.9, 1.0);
     interval_search_run(search, space->traversal.lane_count, test_loose_elements, search);
-    interval_search_half_spaces(search);
+    search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;
@@ -282,7 +283,7 @@ cscd_status interval_search_all_loose(interval_search *search) {
     double since = timer_now_ms();
     if (mesh_has_loose_objects(space->mesh))
         interval_search_run(search, space->traversal.lane_count, test_all_loose_elements, search);
-    interval_search_half_spaces(search);
+    search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;
@@ -404,7 +405,7 @@ cscd_status candidates_test(const candidates *c, interval_search *search) {
     testing t = {c, search};
     progress_stage(&space->context->progress, "candidates", 0.0, 1.0);
     interval_search_run(search, space->traversal.lane_count, test_share, &t);
-    interval_search_half_spaces(search);
+    search_half_spaces(search);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;
 }

@@ -69,9 +69,6 @@ cscd_status interval_search_everything(interval_search *search);
  * refitted. No other function here does, but brute force. */
 cscd_status interval_search_loose(interval_search *search);
 
-/* Tests all vertices against the half-spaces. */
-void interval_search_half_spaces(interval_search *search);
-
 /* Skips the pairs of adjacent triangles of all components, or of none. */
 void interval_search_skip_adjacent(interval_search *search, bool everywhere);
 

@@ -157,7 +157,7 @@ static cscd_status find_bounds(cscd_detector *d, const double *x0, double search
     return CSCD_OK;
 }
 
-/* ---- the call ------------------------------------------------------------------------------------------ */
+/* ---- cscd_detector_displacement_bounds ----------------------------------------------------------------- */
 
 static cscd_status check_array(const cscd_detector *d, double search_radius, cscd_scalar scalar,
                                const void *bounds, size_t size) {
@@ -308,6 +308,9 @@ static bool place_vertex(const truncation_work *w, size_t vertex, double share, 
 
 /* ---- all vertices -------------------------------------------------------------------------------------- */
 
+/* The number of vertices that one thread takes at a time. */
+enum { VERTICES_PER_SHARE = 4096 };
+
 static void settle_object(const truncation_work *w, uint32_t object, size_t begin, size_t end) {
     const cscd_object *of = &w->mesh->objects[object];
     cscd_scalar scalar = w->motion->scalars != NULL ? w->motion->scalars[object] : CSCD_SCALAR_DOUBLE;
@@ -424,7 +427,7 @@ static void carry_states_over(cscd_detector *d, const double *end) {
     start_states_end(&d->known.starts, end, d->interval.incomplete);
 }
 
-/* ---- the call ------------------------------------------------------------------------------------------ */
+/* ---- one truncation ----------------------------------------------------------------------------------- */
 
 static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t **first) {
     size_t count = d->mesh->vertex_count;
@@ -470,7 +473,7 @@ static cscd_status find_truncation(cscd_detector *d, const wanted_motion *motion
     return CSCD_OK;
 }
 
-/* ---- of the API ---------------------------------------------------------------------------------------- */
+/* ---- cscd_detector_truncate ---------------------------------------------------------------------------- */
 
 /* The positions that are reached are compared with the planes in the scalar in which they are written, and a vertex
  * must be able to stay where it is. */

@@ -10,8 +10,8 @@ typedef struct near_rules {
     const detector_config *config;
 } near_rules;
 
-/* The number of pairs, and of vertices, that one thread takes at a time. */
-enum { NEAR_PAIRS_PER_SHARE = 1024, VERTICES_PER_SHARE = 4096 };
+/* The number of pairs that one thread takes at a time. */
+enum { NEAR_PAIRS_PER_SHARE = 1024 };
 
 /* The distance that the pair must keep: 0, the detector's separation, or that of the rules for its objects. */
 double near_pair_separation(const near_rules *r, const cscd_proximity *pair);

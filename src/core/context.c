@@ -154,8 +154,12 @@ void cscd_context_cancel(cscd_context *context) {
 cscd_context_info cscd_context_describe(const cscd_context *context) {
     return (cscd_context_info){.thread_count = parallel_thread_count(context->threads),
                                .simd = context->simd,
-                               .bytes = memory_bytes(&context->memory),
-                               .memory_share = memory_share()};
+                               .bytes = memory_bytes(&context->memory)};
+}
+
+size_t cscd_context_memory_share(const cscd_context *context) {
+    (void)context;
+    return memory_share();
 }
 
 bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count) {

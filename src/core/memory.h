@@ -2,7 +2,6 @@
 #pragma once
 
 #include "src/core/entry.h"
-#include "src/core/memory.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,5 +1,6 @@
 /* Memory and threads of a context: every byte is counted, no size overflows, and every task is run once. */
 #include "src/core/context.h"
+#include "src/core/system.h"
 #include "tests/support/test.h"
 
 #include <stdatomic.h>
@@ -28,6 +29,14 @@ TEST(what_is_given_back_counts_no_more) {
     context_free(context, other);
     context_free(context, grown);
     assert_int_equal(cscd_context_describe(context).bytes, before);
+    cscd_context_destroy(context);
+}
+
+/* Other processes take and give back memory meanwhile. */
+TEST(the_share_of_memory_is_a_quarter_of_what_is_free) {
+    cscd_context *context = make_context(1);
+    const size_t before = system_memory_left() / 4, share = cscd_context_memory_share(context);
+    assert_true(share > before / 2 && share / 2 < before);
     cscd_context_destroy(context);
 }
 

@@ -19,6 +19,7 @@ TEST(contexts) {
     assert_int_equal(context.info().simd, CSCD_SIMD_SCALAR);
     assert_int_equal(context.info().bytes, cscd_context_describe(context.get()).bytes);
     assert_true(context.info().bytes > 0);
+    assert_true(context.memory_share() > 0);
     context.cancel();
     cscd::context taken(std::move(context));
     assert_false(static_cast<bool>(context));

@@ -156,7 +156,7 @@ static cscd_status step_within_memory(const replay_detector *d, const double *x0
                                       cscd_contacts *out) {
     const uint32_t vertices = cscd_mesh_vertex_count(d->recording->mesh);
     const size_t given = d->options->answers.limits.memory,
-                 most = given > 0 ? given : cscd_context_describe(d->recording->context).memory_share;
+                 most = given > 0 ? given : cscd_context_memory_share(d->recording->context);
     cscd_status status = cscd_detector_set_longest_list(d->detector, most / CONTACT_SIZE + 1);
     if (status != CSCD_OK) return status;
     status = cscd_detector_step(d->detector, CSCD_DOUBLES(x0, vertices), CSCD_DOUBLES(x1, vertices), out);
