@@ -1,5 +1,5 @@
-/* The cost of answers about intersections, compared with the plain check: kinds, curves, patches, overlaps,
- * depths, what is cut off, events. */
+/* The cost of answers about intersections, compared with the plain check: curves, patches, overlaps, depths, what is
+ * cut off, events. */
 #include "benchmarks/lib/crossing_scenes.h"
 #include "benchmarks/lib/deforming_body.h"
 #include "benchmarks/lib/options.h"
@@ -15,11 +15,11 @@ enum { REPEATS = 7, ROWS_MAX = 16 };
 static const char help[] =
     "usage: intersections [options]\n"
     "\n"
-    "What cscd_detector_check takes at one moment, and cscd_detector_find_intersections with kinds alone, then with\n"
-    "curves, with patches too, with overlaps, with depths, and with all of these. The scenes are made here, but for\n"
-    "cloth. Milliseconds of processor time of all threads, in which a crowded machine shows less; each the least of\n"
-    "some rounds, in which all take turns; trees and buffers are there. x: of all, beside the check. grown: how\n"
-    "often these rounds have allocated.\n"
+    "What cscd_detector_find_intersections takes at one moment by default (check), then with curves, with patches,\n"
+    "too, with overlaps, with depths, and with all of these. The scenes are made here, except cloth. Milliseconds of\n"
+    "processor time of all threads, in which a crowded machine shows less; each is the least of some rounds, in\n"
+    "which all take turns; trees and buffers exist. x: all, as a multiple of the check. grown: how often these\n"
+    "rounds have allocated.\n"
     "The second table: with patches and what is cut off; and a frame of a cscd_event_tracker that is given all\n"
     "answers.\n"
     "--intervals: the rounds (default 7, with --quick 3). --sizes, --body and --shuffled mean nothing here.\n"
@@ -27,7 +27,6 @@ static const char help[] =
 
 typedef enum question {
     ASK_CHECK,
-    ASK_KINDS,
     ASK_CURVES,
     ASK_PATCHES,
     ASK_OVERLAPS,
@@ -38,8 +37,8 @@ typedef enum question {
     FIRST_TABLE_COUNT = ASK_ALL + 1
 } question;
 
-static const char *const question_names[QUESTION_COUNT] = {"check",    "kinds",  "curves", "patches",
-                                                           "overlaps", "depths", "all",    "cut_offs"};
+static const char *const question_names[QUESTION_COUNT] = {"check",  "curves", "patches", "overlaps",
+                                                           "depths", "all",    "cut_offs"};
 
 typedef struct moment {
     const char *name;
@@ -95,11 +94,8 @@ static cscd_status ask_question(cscd_detector *d, const moment *m, question q, d
     options.depths = q == ASK_DEPTHS || q == ASK_ALL;
     options.cut_offs = q == ASK_CUT_OFFS;
     double since = processor_ms();
-    cscd_intersections pairs;
     cscd_status status =
-        q == ASK_CHECK ? cscd_detector_check(d, CSCD_DOUBLES(m->positions, m->vertex_count), &pairs)
-                       : cscd_detector_find_intersections(d, CSCD_DOUBLES(m->positions, m->vertex_count),
-                                                          &options, found);
+        cscd_detector_find_intersections(d, CSCD_DOUBLES(m->positions, m->vertex_count), &options, found);
     *ms = processor_ms() - since;
     return status;
 }
