@@ -20,9 +20,9 @@ SECTIONS = (
 OPENING = """# Measurements
 
 This page is made by `make claims` from the tables in [benchmarks/results](../../benchmarks/results/), which have every row, the
-commands, commits, dates and machines. Unless a section says otherwise, numbers are of one thread, with `-O3` of gcc 12.2 on Debian 12, on
-machines of two cores that others share. Their speed changes by a third within minutes: ratios within a table say more than times,
-and counts do not change. `make benchmarks` builds the programs; each has `--help`.
+commands, commits, dates and machines; some tables stand there alone. Unless a section says otherwise, numbers are of one thread,
+with `-O3` of gcc 12.2 on Debian 12, on machines of two cores that others share. Their speed changes by a third within minutes:
+ratios within a table say more than times, and counts do not change. `make benchmarks` builds the programs.
 """
 
 
@@ -56,8 +56,7 @@ def section_of(name):
 
 
 def page_of_claims():
-    others = [f'[{path.stem}](../../benchmarks/results/{path.name})' for path in sorted(RESULTS.glob('*.json')) if path.stem not in SECTIONS]
-    return '\n\n'.join([OPENING.rstrip(), *map(section_of, SECTIONS), '## Other tables', ', '.join(others)]) + '\n'
+    return '\n\n'.join([OPENING.rstrip(), *map(section_of, SECTIONS)]) + '\n'
 
 
 def main():
