@@ -4,7 +4,7 @@
 #include "runtime/narrow_phase/narrow_phase.h"
 
 /* Hide the pairs within patches that cannot touch themselves. Both lose no contact, whatever the start: ICCD (Tang et al. 2009),
- * corrected (docs/theory/iccd.md), and normal cones with contours that stay star-shaped, in linear time (docs/theory/cones.md). */
+ * corrected, and normal cones with contours that stay star-shaped, in linear time (docs/theory/iccd.md). */
 extern const pair_hider iccd_hider, cones_hider;
 
 /* The published pipelines, from the update of their trees to contacts: culling by detector points (Yeh 2012, chapter 4), and ICCD as

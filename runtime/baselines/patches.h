@@ -92,7 +92,7 @@ typedef struct star_vertex {
 } star_vertex;
 
 /* Certified for the loop of a disk whose triangles all face the axis: true only if the projection of the disk is one-to-one at every
- * moment of the interval (docs/theory/cones.md). Linear in the loop's length. vertices: room for edge_count of them. */
+ * moment of the interval (docs/theory/iccd.md). Linear in the loop's length. vertices: room for edge_count of them. */
 bool contour_stays_star(const contour_query *query, star_vertex *vertices);
 
 /* The test of cones, by contour_stays_star. */
@@ -170,7 +170,7 @@ cscd_status patches_create(const cscd_mesh *mesh, const patch_tree *tree, const 
 void patches_free(cscd_context *context, patches *p);
 
 /* Finds the nodes whose triangles cannot touch each other while the vertices move from x0 to x1: they have passed. See
- * docs/theory/iccd.md for the proof, and docs/theory/cones.md.
+ * docs/theory/iccd.md for the proofs.
  * published: follows the literature, which loses contacts. Cones hold the normals of both ends only and may open up
  * to pi, any set of triangles is a patch, contours are assumed to be simple at the start, and pairs of edges that
  * the parent's contour has too are not tested again although the axis is another. */

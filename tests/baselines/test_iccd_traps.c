@@ -1,5 +1,5 @@
 /* Methods iccd and cones in cases that are easily wrong: each scene breaks one condition of the theorems in
- * docs/theory/iccd.md and cones.md, and has contacts that a test without that condition would lose. */
+ * docs/theory/iccd.md, and has contacts that a test without that condition would lose. */
 #include "cscd/research.h"
 #include "tests/support/methods.h"
 #include "tests/support/rig.h"
