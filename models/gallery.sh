@@ -57,11 +57,6 @@ whole mixed 5,10 0:110:10 '--colour contacts'
 "$tool" render "$models/folds.obj" "$models/folds.pc2" --frames 0:50:50 --columns 2 --size 480x420 --view 30,20 --up z \
     -o "$images/folds.png"
 strip tumble 25,25 4 0:143:13
-sensed() { # sensed NAME FRAME VIEW [OPTIONS]: cells, particles and where they have been
-    # shellcheck disable=SC2086
-    "$tool" sense "$models/$1.obj" "$models/$1.pc2" --quiet --picture "$images/sense-$1.png" --frame "$2" --view "$3" \
-        --size 640x480 ${4:-}
-}
-sensed two-spheres-unequal 20 20,15 '--cells 12'
-sensed v-shape 24 20,15 '--plan none'
-sensed t-pair 18 20,15
+# Cells, particles and where they have been.
+"$tool" sense "$models/t-pair.obj" "$models/t-pair.pc2" --quiet --picture "$images/sense-t-pair.png" --frame 18 --view 20,15 \
+    --size 640x480
