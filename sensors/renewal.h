@@ -1,4 +1,4 @@
-/* When particle sensors are due for new cells: areas, edges and concavity against what they were at first. */
+/* Tells when particle sensors are due for new cells: areas, edges and concavity against what they were at first. */
 #pragma once
 
 #include "sensors/partition.h"

@@ -7,7 +7,7 @@
 /* figure    legs that pass through each other
  * knot      a closed tube that passes through itself 14 times: much of it is buried
  * spheres   27 balls, an object each, each in its neighbours
- * scan      a bumpy torus with a spike for each 330 vertices, which runs into the surface beside it: many small curves
+ * scan      a bumpy torus with a spike for each 330 vertices, which runs into the surface next to it: many small curves
  * clean     the same without spikes: no curve at all */
 typedef enum crossing_kind {
     CROSSING_FIGURE,

@@ -4,7 +4,7 @@
 #include "benchmarks/lib/stages.h"
 #include "benchmarks/peers/peer_scenes.h"
 
-/* Whose turn it is. The order is that of a round. */
+/* The candidates that take turns, in the order of a round. */
 typedef enum peer_turn {
     TURN_NONE,           /* cscd_detector_step, method none */
     TURN_BROAD,          /* of that: update and traversal */

@@ -1,7 +1,7 @@
 /*
  * cscd - continuous self-collision detection for deforming triangle meshes.
  *
- * What a solver needs, 27 of the functions:
+ * A solver needs these 27 functions:
  *   create      cscd_context_create(), cscd_mesh_create(), cscd_detector_defaults(), cscd_detector_create().
  *               Before the last, cscd_plan_create() makes steps faster if the mesh is closed and deforms for
  *               long
@@ -19,7 +19,7 @@
  *   destroy     cscd_line_search_destroy(), cscd_detector_destroy(), cscd_plan_destroy(),
  *               cscd_mesh_destroy(), cscd_context_destroy()
  *
- * What holds for every function:
+ * All functions follow these rules:
  *   positions   are given as views (cscd/detector.h). A coordinate is 0 or of magnitude 2^-300 to 2^300; a
  *               call with another one fails and names array, vertex and coordinate
  *   units       any one unit of length. A length is 0 or from 2^-300 to 2^300

@@ -20,7 +20,7 @@ extern "C" {
 
 /* ==== Context =============================================================================================== */
 
-/* How a call ended. */
+/* The outcome of a call. */
 typedef enum cscd_status {
     CSCD_OK = 0,
     CSCD_OUT_OF_MEMORY,    /* an allocation failed */
@@ -165,7 +165,7 @@ CSCD_API const char *cscd_context_detail(const cscd_context *context);
  */
 CSCD_API void cscd_context_cancel(cscd_context *context);
 
-/* What a context works with. */
+/* Facts about a context. */
 typedef struct cscd_context_info {
     uint32_t thread_count; /* that share long work; with parallel_for the number of tasks */
     cscd_simd simd;        /* the instruction set in use, never AUTO */
@@ -259,7 +259,7 @@ static inline cscd_mutable_view cscd_mutable_view_floats(float *positions, size_
 /* The connectivity of one object or of a scene, without positions. It never changes. */
 typedef struct cscd_mesh cscd_mesh;
 
-/* What an object is made of. Features of *loose* objects, those not of triangles, belong to no triangle and
+/* The kind of an object. Features of *loose* objects, those not of triangles, belong to no triangle and
  * no component. */
 typedef enum cscd_object_kind {
     CSCD_OBJECT_TRIANGLES,
@@ -336,7 +336,7 @@ CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
 /* Returns the context that the mesh was created in. */
 CSCD_API cscd_context *cscd_mesh_context(const cscd_mesh *mesh);
 
-/* What a mesh has, each numbered from 0 on. */
+/* The elements of a mesh, each numbered from 0 on. */
 typedef enum cscd_element {
     CSCD_VERTICES,   /* also those without a triangle, and points of half-spaces */
     CSCD_EDGES,      /* wires, too; in the order of (smaller vertex, larger vertex), each once */
@@ -366,7 +366,7 @@ static inline uint32_t cscd_mesh_object_count(const cscd_mesh *mesh) {
 
 /* ---- its objects --------------------------------------------------------------------------------------- */
 
-/* Where an object's features lie in the numbering of the mesh. */
+/* The places of an object's features in the numbering of the mesh. */
 typedef struct cscd_object {
     bool obstacle;
     cscd_object_kind kind;
@@ -449,7 +449,7 @@ CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
  * docs/theory/culling.md (Yeh 2012) and docs/theory/elementary.md the proofs. */
 typedef struct cscd_detector cscd_detector;
 
-/* How pairs of triangles are left out. Methods differ in time only; cscd/research.h has further ones. */
+/* The way to leave out pairs of triangles. Methods differ in time only; cscd/research.h has further ones. */
 typedef enum cscd_method {
     /* Culls by the plan, without one as SINGLE, wherever that pays; else as NONE (docs/solver/tuning.md). */
     CSCD_METHOD_AUTO,
@@ -468,7 +468,7 @@ static inline const char *cscd_method_name(cscd_method method) {
 /* The regions of a mesh and their detector points: cscd/plan.h. */
 typedef struct cscd_plan cscd_plan;
 
-/* What a step promises, except with the published methods and after a start that was wrongly vouched for. In
+/* The promise of a step, except with the published methods and after a start that was wrongly vouched for. In
  * both modes an empty list proves that there is no contact. */
 typedef enum cscd_mode {
     CSCD_MODE_ALL, /* every contact of the interval, on any mesh, whatever its state at the start */
@@ -478,8 +478,8 @@ typedef enum cscd_mode {
     CSCD_MODE_MAX_ENUM = 0x7fffffff
 } cscd_mode;
 
-/* How a step knows which triangles are clean at its start; only these are culled. docs/about/glossary.md says
- * what *clean* and *embedded* mean. */
+/* The source of a step's knowledge which triangles are clean at its start; only these are culled.
+ * docs/about/glossary.md says what *clean* and *embedded* mean. */
 typedef enum cscd_start {
     CSCD_START_PROVE,   /* the step checks the triangles that are not known to be clean */
     CSCD_START_VOUCHED, /* you say that every start is embedded; if not, contacts may be lost */
@@ -520,7 +520,7 @@ static inline const char *cscd_contact_kind_name(cscd_contact_kind kind) {
     return cscd_name(CSCD_CONTACT_KINDS, kind);
 }
 
-/* What an object has to do with the others; start from cscd_object_rule_default. */
+/* An object's relation to the others; start from cscd_object_rule_default. */
 typedef struct cscd_object_rule {
     /* Two objects are looked at when the category of each has a bit in common with the mask of the other;
      * else their pairs are neither contacts nor intersections nor proximities. */
@@ -663,7 +663,7 @@ typedef struct cscd_contacts {
 CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
                                         cscd_contacts *out);
 
-/* Why the contacts of a component with itself are complete, or why not. */
+/* The reason why the contacts of a component with itself are complete, or why not. */
 typedef enum cscd_reason {
     CSCD_REASON_METHOD,    /* complete: the method does not cull, or not with a distance from itself */
     CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so not culled */
@@ -685,7 +685,7 @@ static inline const char *cscd_reason_text(cscd_reason reason) {
     return cscd_name(CSCD_REASONS, reason);
 }
 
-/* What the last step promises for the contacts of a component with itself. */
+/* The promise of the last step for the contacts of a component with itself. */
 typedef struct cscd_guarantee {
     bool complete;       /* all of them were reported */
     bool start_embedded; /* it was embedded at the start, by proof or because the caller vouched */
@@ -715,7 +715,7 @@ typedef struct cscd_timings {
     double reserved[4];    /* 0 */
 } cscd_timings;
 
-/* What the last step did, in numbers: exact, and the same for any number of threads. */
+/* The work of the last step, in numbers: exact, and the same for any number of threads. */
 typedef struct cscd_counters {
     uint64_t static_checks;    /* of the start, or of a part of it */
     uint64_t clean;            /* triangles that were clean at the start */

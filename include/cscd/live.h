@@ -118,7 +118,7 @@ CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, siz
  *     printf("%d contacts, %s\n", (int)contacts.count, wait ? "pairs wait" : "no pair waits");
  */
 
-/* How many pairs wait. */
+/* The numbers of pairs that wait. */
 typedef struct cscd_waiting {
     size_t features;  /* pairs of features, left out of contacts and proximities */
     size_t triangles; /* pairs of triangles, left out of intersections */

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* How the equations for the charge are solved. The regions that follow differ by few triangles. */
+/* The solver of the equations for the charge. The regions that follow differ by few triangles. */
 typedef enum cscd_charge_solver {
     /* A treecode, with the same bits on every processor: 2 kB for each triangle, or up to 8 kB where all are
      * long and thin, and time about in proportion. Densities are off by some 1e-4 of their mean (root of the
@@ -140,7 +140,7 @@ typedef struct cscd_preprocess_timings {
 /* Returns how long each stage of cscd_plan_create took. */
 CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
 
-/* What a plan is, and how it was made. The names of kernels live as long as OpenBLAS and the library are
+/* Facts about a plan, and how it was made. The names of kernels live as long as OpenBLAS and the library are
  * loaded. */
 typedef struct cscd_plan_info {
     cscd_method method;      /* that made the regions: CHARGE, KMEANS, SINGLE or PUBLISHED */
@@ -177,7 +177,7 @@ typedef struct cscd_compared_plan {
     /* The predicted share of the triangles that a step has to look at, in [0,1] (docs/theory/charge.md). The
      * plan has the least, but charge is kept up to 2 % above that. */
     double tested_share;
-    /* Why there is no plan by charge, in a sentence; else NULL. It lives as long as the plan. */
+    /* The reason why there is no plan by charge, in a sentence; else NULL. It lives as long as the plan. */
     const char *failure;
 } cscd_compared_plan;
 

@@ -1,4 +1,4 @@
-/* What there is to compare with: brute force, published methods, and the plan of the thesis. No solver needs
+/* Methods to compare with: brute force, published methods, and the plan of the thesis. No solver needs
  * this header, so cscd/cscd.h does not include it; what that says of every function holds here, too. */
 #ifndef CSCD_RESEARCH_API_H
 #define CSCD_RESEARCH_API_H

@@ -72,7 +72,7 @@ CSCD_API cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh 
 /* Frees the sensors and their lists. */
 CSCD_API void cscd_sensors_destroy(cscd_sensors *sensors);
 
-/* How much there is of all. */
+/* The sizes of all parts. */
 typedef struct cscd_sensor_info {
     uint32_t part_count; /* of all objects together */
     uint32_t cell_count; /* of all parts together */

@@ -110,7 +110,7 @@ CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
 
-/* How far a motion may go without contact. */
+/* The way that a motion may go without contact. */
 typedef struct cscd_free_step {
     double fraction; /* in (0,1]; with 1 the end is x1, in the scalar of `reached` */
     bool limited;    /* the contact `limit` keeps it below the longest that was asked for */
@@ -179,7 +179,7 @@ CSCD_API cscd_status cscd_detector_displacement_bounds(cscd_detector *detector, 
                                                        double search_radius, cscd_scalar scalar, void *bounds,
                                                        size_t size, cscd_displacement_bounds *out);
 
-/* What cscd_detector_truncate did. The list lives as that of cscd_displacement_bounds. */
+/* The findings of cscd_detector_truncate. The list lives as that of cscd_displacement_bounds. */
 typedef struct cscd_truncation {
     double fraction;          /* the least share of its motion that a vertex went; 1 if none wanted to move */
     double obstacle_fraction; /* the same of the vertices of obstacles; 1 without obstacles */

@@ -20,7 +20,7 @@ extern "C" {
  * place. A triangle has no curve if two of its corners are one vertex. docs/theory/curves.md is the theory of
  * curves, patches, overlaps, depths and cut-offs. */
 
-/* What is at the end of a curve. */
+/* The end of a curve. */
 typedef enum cscd_curve_end {
     CSCD_CURVE_END_NONE,     /* the curve is closed */
     CSCD_CURVE_END_VERTEX,   /* a vertex of both triangles */
@@ -81,9 +81,9 @@ typedef struct cscd_curves {
 
 /* ==== Patches and overlaps ================================================================================== */
 
-/* How often a body winds around a patch, exactly: the sum over its closed components. The number is 0 outside
- * and in cavities, 1 within the body, and 2 within two of its components or limbs. It is below 0 within what
- * is inside out and not taken as turned around.
+/* The number of times that a body winds around a patch, exactly: the sum over its closed components. The
+ * number is 0 outside and in cavities, 1 within the body, and 2 within two of its components or limbs. It is
+ * below 0 within what is inside out and not taken as turned around.
  *
  * The *bodies* are the objects. With the option part_bodies, two components of an object are in one body if a
  * part has triangles of both, or if other components join them so. A component of no part is then a body of
@@ -137,8 +137,8 @@ typedef struct cscd_patches {
     const bool *turned;
 } cscd_patches;
 
-/* What two bodies bury of each other, or one of itself, up to rounding. Where surfaces lie on each other,
- * either of the two areas may count. */
+/* The surface that two bodies bury of each other, or one of itself, up to rounding. Where surfaces lie on
+ * each other, either of the two areas may count. */
 typedef struct cscd_overlap {
     uint32_t a, b; /* bodies; a <= b */
     double area_a; /* of the surface of a within b; with a = b, of a within itself */
@@ -163,7 +163,7 @@ typedef struct cscd_overlaps {
 /* Where a curve divides an open surface, the smaller part has most likely come through, and a solver draws it
  * back (D. Baraff, A. Witkin, M. Kass, Untangling Cloth, ACM Transactions on Graphics 22, 2003). */
 
-/* Which trace of a curve. */
+/* A trace of a curve. */
 typedef enum cscd_curve_trace {
     CSCD_TRACE_FIRST,  /* on the first sheet */
     CSCD_TRACE_SECOND, /* on the second sheet */
@@ -272,8 +272,8 @@ CSCD_API uint32_t cscd_detector_body_labels(const cscd_detector *detector, uint3
 
 /* ---- intersections ------------------------------------------------------------------------------------- */
 
-/* What cscd_detector_find_intersections finds of two parts, or of one with itself. Curves and depths count if
- * the options ask for them. */
+/* The findings of cscd_detector_find_intersections about two parts, or of one with itself. Curves and depths
+ * count if the options ask for them. */
 typedef struct cscd_part_pair {
     uint32_t a, b; /* parts; a <= b */
 
@@ -363,7 +363,7 @@ CSCD_API cscd_status cscd_detector_contact_parts(cscd_detector *detector, const 
  * corners are, and a duplicate needs each two of them at one place. docs/theory/static-check.md has the
  * proofs, and a drawing of each kind. */
 
-/* How two triangles intersect. A pair has exactly one kind. */
+/* The way in which two triangles intersect. A pair has exactly one kind. */
 typedef enum cscd_intersection_kind {
     CSCD_INTERSECTION_CROSSING,  /* they cross */
     CSCD_INTERSECTION_COPLANAR,  /* they share area in one plane, and no vertex */
@@ -383,7 +383,7 @@ static inline uint64_t cscd_intersection_set(cscd_intersection_kind kind) {
     return UINT64_C(1) << kind;
 }
 
-/* What the caller asks for. */
+/* The answer that the caller asks for. */
 typedef enum cscd_intersection_answer {
     CSCD_ANSWER_LIST,  /* the pairs */
     CSCD_ANSWER_COUNT, /* the number of each kind, whatever longest_list is */
@@ -391,7 +391,7 @@ typedef enum cscd_intersection_answer {
     CSCD_ANSWER_MAX_ENUM = 0x7fffffff
 } cscd_intersection_answer;
 
-/* Which closed components are taken as turned around (cscd_patches), for patches, overlaps and depths. */
+/* The closed components that are taken as turned around (cscd_patches), for patches, overlaps and depths. */
 typedef enum cscd_orientation {
     CSCD_ORIENTATION_BY_OBJECT, /* cavities are found within an object */
     CSCD_ORIENTATION_BY_PART,   /* cavities are found within an object and a part (cscd_patches) */
@@ -441,7 +441,7 @@ typedef struct cscd_intersection_options {
     uint64_t max_work;
 } cscd_intersection_options;
 
-/* What a call may leave out for max_memory or max_work. */
+/* The answers that a call may leave out for max_memory or max_work. */
 typedef enum cscd_left_out {
     CSCD_LEFT_OUT_PAIRS, /* not in a list, but counted */
     CSCD_LEFT_OUT_CURVES,
@@ -480,7 +480,7 @@ typedef struct cscd_intersections {
     bool stopped;             /* the search has ended early, so there may be more pairs */
     uint8_t reserved[3];
 
-    /* What the options ask for, else NULL; lives as long as the list. */
+    /* The answers that the options ask for, else NULL; each lives as long as the list. */
     const cscd_curves *curves;
     const cscd_patches *patches;
     const cscd_overlaps *overlaps;
@@ -490,8 +490,8 @@ typedef struct cscd_intersections {
 
     const uint32_t *collapsed_components; /* `collapsed` of them, ascending; NULL if there are none */
 
-    /* What did not fit max_memory or max_work and is NULL: (uint64_t)1 << CSCD_LEFT_OUT_CURVES and so on,
-     * joined by |. */
+    /* The answers that did not fit max_memory or max_work and are NULL: (uint64_t)1 << CSCD_LEFT_OUT_CURVES
+     * and so on, joined by |. */
     uint64_t left_out;
 
     /* The max_memory with which the first of these would have gone on; it may then need more. 0 if work was

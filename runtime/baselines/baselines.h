@@ -1,4 +1,4 @@
-/* What there is to compare with, as stages of a step: patches that cannot touch themselves, and the published pipelines. */
+/* Methods to compare with, as stages of a step: patches that cannot touch themselves, and the published pipelines. */
 #pragma once
 
 #include "runtime/narrow_phase/narrow_phase.h"

@@ -1,4 +1,4 @@
-/* Which patches cannot touch themselves in an interval: cones from the leaves up, contours from the roots down. */
+/* Finds the patches that cannot touch themselves in an interval: cones from the leaves up, contours from the roots down. */
 #include "runtime/baselines/patches.h"
 
 #include <math.h>

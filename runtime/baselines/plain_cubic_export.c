@@ -1,4 +1,4 @@
-/* What libcscd-baselines exports of GSL. These functions of GSL call no error handler, and cannot fail. */
+/* The functions of GSL that libcscd-baselines exports. They of GSL call no error handler, and cannot fail. */
 #include "runtime/baselines/plain_cubic.h"
 #include "src/core/baseline_library.h"
 

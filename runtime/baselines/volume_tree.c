@@ -14,7 +14,7 @@ const char *volume_kind_name(volume_kind kind) {
 
 enum { AXES = 7, NO_PARENT = 0xffffffffu };
 
-/* Of the 14-DOP, as unit vectors, so that widths along different axes compare. */
+/* The axes of the 14-DOP, as unit vectors, so that widths along different axes compare. */
 #define DIAGONAL 0.57735026918962576
 static const double axes[AXES][3] = {{1, 0, 0},
                                      {0, 1, 0},

@@ -59,7 +59,7 @@ void volume_tree_free(volume_tree *t);
 /* Takes over orientations of triangles, by which the search leaves out pairs as in culling; NULL: none are left out. */
 void volume_tree_orient(volume_tree *t, const uint8_t *orientations);
 
-/* What a search finds, in an order that is the same for all kinds but for what they leave out. */
+/* The results of a search, in an order that is the same for all kinds except for what they leave out. */
 typedef struct volume_search {
     cscd_context *context;
     uint32_t (*pairs)[2]; /* triangles whose volumes overlap, the smaller number first */

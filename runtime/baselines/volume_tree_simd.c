@@ -18,10 +18,10 @@ enum { VECTORS_MAX = VOLUME_FLOATS_MAX / LANES, ORIGIN_SAMPLES = 64 };
 
 #define OPPOSITE(v) __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3)
 
-/* Rounding: docs/theory/trees.md. Bounds along axes and diagonals are widened by so many times 2^-24 of the reach. */
+/* Rounding: docs/theory/trees.md. Bounds along axes and diagonals are widened by this many times 2^-24 of the reach. */
 static const float slack_axes = 0x4p-24f, slack_diagonals = 0x10p-24f;
 
-/* Of a sphere: corners are off by sqrt 3 2^-24 of the reach, distances, which are up to 4 reaches, by 4 of their 2^-24;
+/* The bounds of a sphere: corners are off by sqrt 3 2^-24 of the reach, distances, which are up to 4 reaches, by 4 of their 2^-24;
  * centres of spheres around two by less than 8 of the reach. */
 static const float slack_sphere = 0x20p-24f, one_and_more = 1.0f + 0x1p-20f;
 

@@ -110,10 +110,10 @@ typedef struct bvh_level {
      * some of their objects are; obstacle_lanes is not read then. NULL: there are no rules. */
     object_set *child_sets;
 
-    /* How the triangles of each child of a block lie around a hub; NULL: the mesh has no hub. */
+    /* The places of the triangles of each child of a block around a hub; NULL: the mesh has no hub. */
     struct hub_volume *child_hubs;
 
-    /* How the slivers of each child of a block lie; NULL: the mesh is not made of slivers or large triangles. */
+    /* The places of the slivers of each child of a block; NULL: the mesh is not made of slivers or large triangles. */
     struct sliver_volume *child_slivers;
 
     /* Per block, the children without an active triangle, which are not compared with each other; NULL: all triangles
@@ -386,7 +386,7 @@ typedef struct near_quest {
     const uint32_t *numbers; /* per component; NULL: all components */
 } near_quest;
 
-/* Calls visit for each triangle that is asked for, and perhaps for some others, whose bounding volume may be as near to
+/* Calls visit for each triangle that was asked for, and perhaps for some others, whose bounding volume may be as near to
  * the point as the root of *squared, nearer blocks first; visit may lower *squared, which is a squared distance times
  * the square of the trees' scale, so that it neither overflows nor vanishes. INFINITY: any distance. */
 void bvh_visit_near(const bvh *hierarchy, const near_quest *quest, const double point[3], double *squared,

@@ -16,7 +16,7 @@ typedef struct builder {
 
 /* ---- order ------------------------------------------------------------------------------------------- */
 
-/* What threads share to find centres. */
+/* The arrays that threads share to find centres. */
 typedef struct centre_work {
     const cscd_mesh *mesh;
     const double *positions;
@@ -320,7 +320,7 @@ static double scale_for(const cscd_mesh *mesh, const double *positions, const pl
     return ldexp(1.0, -exponent);
 }
 
-/* Why there are no trees. */
+/* The reason why there are no trees. */
 static cscd_status failure_of(cscd_context *context) {
     cscd_status status = context_progress_status(context);
     return status != CSCD_OK ? status : CSCD_OUT_OF_MEMORY;

@@ -6,7 +6,7 @@
 
 /* ---- order -------------------------------------------------------------------------------------------- */
 
-/* Which tree stands where: an old tree, or a region without one. */
+/* The tree that stands in each place: an old tree, or a region without one. */
 typedef struct tree_order {
     uint32_t
         *trees; /* per new tree: the old one, or tree_count of the old BVH plus the place in move->fresh */

@@ -1,4 +1,4 @@
-/* What is left out of traversals: pairs of objects, features that are not active, and components without a surface. */
+/* Leaves pairs of objects, features that are not active, and components without a surface out of traversals. */
 #include "runtime/bvh/bvh_parts.h"
 
 /* ---- trees --------------------------------------------------------------------------------------------- */

@@ -1,4 +1,4 @@
-/* What the files of the BVH share: the kernels, the steps of building, volumes where boxes overlap too much, the skin. */
+/* The files of the BVH share this: the kernels, the steps of building, volumes where boxes overlap too much, the skin. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -112,7 +112,7 @@ void bvh_free_collapsed(bvh *hierarchy);
  * the hub or, where they share two hubs like the pages of a book, as seen from the edge between these. */
 enum { NO_HUB = UINT32_MAX };
 
-/* Where the triangles below a child lie, as seen from a vertex that all of them share. */
+/* The places of the triangles below a child, as seen from a vertex that all of them share. */
 typedef struct hub_volume {
     uint32_t hub;   /* the vertex; NO_HUB: they share none, or nothing is known of their directions */
     uint32_t other; /* NO_HUB, or another one, of a greater number */
@@ -135,7 +135,7 @@ bool hub_volumes_apart(const hub_volume *a, const hub_volume *b, double distance
  * one around their near ends and one around their far ends; in doubles, because large triangles may lie on each other more
  * closely than floats tell. */
 
-/* Where the triangles below a child lie: each corner is in one of the two boxes. Not scaled. */
+/* The places of the triangles below a child: each corner is in one of the two boxes. Not scaled. */
 typedef struct sliver_volume {
     /* Near or far, at both ends of the interval: the least and the greatest coordinates. */
     double boxes[2][2][2][3];

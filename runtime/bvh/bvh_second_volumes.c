@@ -13,7 +13,7 @@ static const double direction_slack = 0x1p-48, normal_slack = 0x1p-28;
 /* Directions that differ by more than an angle with this cosine say nothing of what lies between them. */
 static const double least_cosine = 0.5;
 
-/* A sliver is so many times as long as it is high; a large triangle is this share of the mesh long. */
+/* A sliver is this many times as long as it is high; a large triangle is this share of the mesh long. */
 static const double sliver_ratio = 16.0, large_share = 0.125;
 
 static uint32_t lane_count(const bvh_level *level, uint32_t block) {
@@ -285,7 +285,7 @@ static void join_hub_volumes(const bvh_level *level, uint32_t block, hub_volume 
         join_hub_volume(&level->child_hubs[(size_t)block * LANES + i], out);
 }
 
-/* Of two volumes with one hub. A feature of a pair of features without a common vertex is a side opposite the hub, or an end
+/* Two volumes with one hub. A feature of a pair of features without a common vertex is a side opposite the hub, or an end
  * of one: it is at least reach away from there, and the other triangle lies in directions that differ by a chord of c at
  * least. So they are apart by reach times the sine of the angle, which is above 0.7 c for the part of c up to a right
  * angle. */

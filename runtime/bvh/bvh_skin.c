@@ -1,4 +1,4 @@
-/* How far trees have moved since a moment. */
+/* Measures how far trees have moved since a moment. */
 #include "runtime/bvh/bvh_parts.h"
 
 #include "src/core/floating.h"

@@ -1,4 +1,4 @@
-/* How far a point is from boxes: those of a block's children, and those of a leaf's triangles. */
+/* Measures how far a point is from boxes: those of a block's children, and those of a leaf's triangles. */
 #include "runtime/bvh/bvh_simd.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static f32x8 dot_of(const f32x8 a[3], const f32x8 b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Which of the triangles' planes are farther from the point p than the square root of most? With corners and p as they are
+/* Finds the triangles whose planes are farther from the point p than the square root of most. With corners and p as they are
  * rounded here, the distance from the plane is |h| / |n|, with n the product of two sides of squared lengths a and b, and
  * h = n w, w from a corner to p. With u = 2^-24, n is off by less than 8 u sqrt(ab), and h by less than 16 u sqrt(ab) |w|. As
  * (x - e)^2 > x^2 (1 - t) - e^2 / t, and the same with +, for t = 2^-10, that is less than 2^-30 ab w w in h h, and 2^-31 ab in

@@ -15,14 +15,14 @@
 
 /* ---- lanes --------------------------------------------------------------------------------------------- */
 
-/* Which lanes of two blocks, or of two leaves, are compared at all: by flags, obstacles, activity, objects and hidden pairs. */
+/* Chooses the lanes of two blocks, or of two leaves, that are compared at all: by flags, obstacles, activity, objects and hidden pairs. */
 
 /* A pair of blocks or of leaves whose lanes are compared. */
 typedef struct lane_comparison {
     lane_flags a, b;
     lane_flags before_a, before_b; /* flags of leaves before, in the pass NEWLY_KEPT */
     uint64_t self_pairs;
-    /* Of blocks: lanes that hold obstacles only, lanes without active triangles and lanes of collapsed components, where
+    /* For blocks: lanes that hold obstacles only, lanes without active triangles and lanes of collapsed components, where
      * the pass skips pairs of two of these, and all of them. */
     uint32_t obstacles_a, obstacles_b, inactive_a, inactive_b, collapsed_a, collapsed_b, resting_a;
     bool itself, one_tree, leaves;

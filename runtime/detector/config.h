@@ -1,4 +1,4 @@
-/* What a detector is told: its options, and what follows from them. */
+/* The configuration of a detector: its options, and all that follows from them. */
 #pragma once
 
 #include "cscd/research.h"
@@ -9,7 +9,7 @@
 #include "src/core/names.h"
 #include "src/mesh/parts.h"
 
-/* How a method goes through the pipeline. */
+/* A method's way through the pipeline. */
 typedef struct method_stages {
     cscd_method method;
     const culling_rules *rules; /* NULL: this build does not have the method */
@@ -82,7 +82,7 @@ static inline bool config_hides_pairs(const detector_config *c) {
     return c->stages->hider != NULL && c->limit.distance == 0.0 && c->pair_rules.greatest_to_itself == 0.0;
 }
 
-/* How far the volumes of a step are widened. */
+/* The widening of a step's volumes. */
 static inline volume_growth config_growth(const detector_config *c) {
     return (volume_growth){c->limit.distance, config_is_thick(c) ? c->pair_rules.reaches : NULL, 0.0};
 }

@@ -9,7 +9,7 @@
 #include "runtime/detector/start_knowledge.h"
 #include "runtime/detector/waiting.h"
 
-/* What calls have found, and memory for it. */
+/* The results of calls, and memory for them. */
 typedef struct detector_results {
     cscd_guarantee *guarantees; /* per component, of the last step */
     cscd_timings timings;
@@ -118,7 +118,7 @@ double detector_floors_beyond(const cscd_detector *d, double distance, const dou
 /* Begins a search for what falls below its floor; without a distance, for what touches. */
 interval_search detector_search_floors(cscd_detector *d, const double *x0, const double *x1);
 
-/* What waiting pairs are looked for with. */
+/* The means to look for waiting pairs. */
 static inline waiting_place detector_waiting_place(cscd_detector *d) {
     return (waiting_place){&d->config, &d->space, &d->rebuild, &d->known.check};
 }

@@ -309,7 +309,7 @@ static void join_rules(cscd_detector *d) {
     d->known.starts.never_culled = d->config.never_culled;
 }
 
-/* What was said of the last moment is said of it again. */
+/* The new detector says of the last moment what the old one said. */
 static cscd_status clone_collapsed(const collapsed_components *from, const cscd_mesh *mesh,
                                    collapsed_components *to) {
     cscd_status status = collapsed_create(mesh, to);

@@ -1,4 +1,4 @@
-/* How long edges are at rest, by which a barrier judges whether two of them are nearly parallel. */
+/* Lengths of edges at rest, by which a barrier judges whether two of them are nearly parallel. */
 #include "runtime/detector/edge_rest.h"
 
 #include "src/core/vec3.h"

@@ -1,4 +1,4 @@
-/* How long edges are at rest, by which a barrier judges whether two of them are nearly parallel. */
+/* Lengths of edges at rest, by which a barrier judges whether two of them are nearly parallel. */
 #pragma once
 
 #include "src/mesh/mesh_change.h"

@@ -57,7 +57,7 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
-/* What a pair takes at most, all together: in the lane that finds it, and in the list, where it is sorted. */
+/* The most bytes that a pair takes: in the lane that finds it, and in the list, where it is sorted. */
 enum { PAIR_SIZE = 64 };
 
 static size_t most_memory(const cscd_detector *d, const cscd_intersection_options *options) {
@@ -261,7 +261,7 @@ static void count_zero_area(const static_check *check, cscd_intersections *out) 
     }
 }
 
-/* Nothing is found beside pairs that are not listed. */
+/* Where pairs are not listed, nothing else is found. */
 static void leave_out_list(const kind_search *s, cscd_intersections *out) {
     const size_t longest = s->detector->config.options.longest_list;
     const bool by_memory = longest == 0 || out->count <= longest;
@@ -317,7 +317,7 @@ static cscd_status sum_up_parts(cscd_detector *d, memory_budget *budget, cscd_in
 
 #define MAX_WORK_DEFAULT ((uint64_t)1 << 28)
 
-/* What calls keep for the next ones does not count, so a quarter is left for it. If they keep more than that, it is given
+/* Memory that calls keep for the next ones does not count, so a quarter is left for it. If they keep more than that, it is given
  * back first. */
 static memory_budget begin_memory(cscd_detector *d, const cscd_intersection_options *options) {
     size_t most = most_memory(d, options), kept = most / 8;

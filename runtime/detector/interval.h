@@ -5,7 +5,7 @@
 #include "runtime/detector/search.h"
 #include "runtime/intersections/intersections.h"
 
-/* Which contacts that leave the lanes taint triangles: all of them, or, in a search of a moment, those that are left
+/* The contacts that taint triangles when they leave the lanes: all of them, or, in a search of a moment, those that are left
  * out and may touch on the way of a motion that begins there. Where only the earliest contacts are listed, those leave the
  * lanes that neither taint nor are listed. */
 typedef enum cap_taint { CAP_TAINTS_ALL, CAP_TAINTS_LEFT_OUT, CAP_KEEPS_EARLIEST } cap_taint;

@@ -85,7 +85,7 @@ typedef struct candidates {
     candidate_list lists[2]; /* by cscd_contact_kind */
 } candidates;
 
-/* Which candidates are wanted: all pairs that come within reach, or within their own distance if this is more; the margin is
+/* The candidates that are wanted: all pairs that come within reach, or within their own distance if this is more; the margin is
  * added to both. */
 typedef struct candidate_quest {
     search_space *space;

@@ -1,4 +1,4 @@
-/* What a detector knows of the start of its next interval: the snapshot that a call which is cancelled or fails puts back. */
+/* A detector's knowledge of the start of its next interval: the snapshot that a call which is cancelled or fails puts back. */
 #include "runtime/detector/start_knowledge.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What a detector knows of the start of its next interval, and how a call that fails puts that back. */
+/* A detector's knowledge of the start of its next interval. A call that fails puts it back. */
 #pragma once
 
 #include "runtime/culling/culling.h"
@@ -30,7 +30,7 @@ void rollback_free(cscd_context *context, rollback *r);
 void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees);
 void rollback_restore(const rollback *r, start_states *starts, bvh_rebuild *trees);
 
-/* What is known of the positions that the next interval begins at. */
+/* The knowledge of the positions that the next interval begins at. */
 typedef struct start_knowledge {
     start_states starts;
     static_check check;

@@ -336,7 +336,7 @@ static cscd_reason culling_reason(const cscd_detector *d, uint32_t component, bo
     return d->interval.touched[component] ? CSCD_REASON_FINISHED : CSCD_REASON_CLEAN;
 }
 
-/* What the current interval, all of whose stages are done, promises for the contacts of a component with itself. */
+/* The promise of the current interval, all of whose stages are done, for the contacts of a component with itself. */
 static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     bool embedded = d->known.starts.of[component].clean == d->mesh->components[component].triangle_count;
     if (component_is_obstacle(d->mesh, component))

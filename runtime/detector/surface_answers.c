@@ -76,7 +76,7 @@ void surface_answers_shrink(cscd_context *context, surface_answers **answers, si
     *answers = NULL;
 }
 
-/* Of what a call asks for; what needs something that is left out is left out with it. */
+/* Leaves out answers that the call asks for; one that needs another that is left out goes with it. */
 static void leave_out_all(const cscd_intersection_options *o, memory_budget *budget,
                           cscd_intersections *found) {
     const bool asked[] = {[CSCD_LEFT_OUT_CURVES] = surface_answers_wanted(o) && found->curves == NULL,
@@ -108,7 +108,7 @@ typedef struct answer_search {
     cscd_intersections *found;
 } answer_search;
 
-/* What did not fit takes nothing of the budget, nor of memory. */
+/* An answer that did not fit takes nothing of the budget, nor of memory. */
 static bool did_not_fit(const answer_search *s, cscd_status status, size_t taken_before) {
     if (status != CSCD_OUT_OF_MEMORY || !s->budget->exceeded) return false;
     s->budget->taken = taken_before;
@@ -174,7 +174,7 @@ static cscd_status find_cut_offs(const answer_search *s) {
     return CSCD_OK;
 }
 
-/* Which bodies are copies; uses the finder of overlaps. */
+/* Finds the bodies that are copies, by the finder of overlaps. */
 static cscd_status find_same_solids(const answer_search *s) {
     surface_answers *a = s->answers;
     return same_solids_find(&a->same_solids, s->cuts, s->found->items, s->found->count, &a->depths,

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* In mean lengths of edges: a skin is so thin at least, and so thick at most, for beyond that more pairs are listed than it
- * saves. It is made for so many intervals like the first one; where a motion is too fast for the least number of them,
+ * saves. It is made for this many intervals like the first one; where a motion is too fast for the least number of them,
  * there is no list. Measured: docs/theory/coherence.md. */
 static const double thinnest = 0.1, thickest = 0.15, intervals_wanted = 16.0, intervals_least = 8.0;
 

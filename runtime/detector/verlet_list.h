@@ -9,7 +9,7 @@
 #include "runtime/bvh/bvh.h"
 #include "runtime/detector/interval.h"
 
-/* What a call that fails puts back. */
+/* The state that a failing call puts back. */
 typedef struct verlet_state {
     bool exists;       /* there is a list, which holds at the positions of this revision */
     uint64_t revision; /* of start_states */
@@ -35,7 +35,7 @@ typedef struct verlet_list {
 void verlet_list_begin_call(verlet_list *v);
 void verlet_list_undo(verlet_list *v);
 
-/* What a list is made with: trees and how they are widened in a step, the interval, and the start of which it is made. */
+/* The means to make a list: trees and how they are widened in a step, the interval, and the start of which it is made. */
 typedef struct verlet_place {
     search_space *space;
     bvh_rebuild *rebuild;

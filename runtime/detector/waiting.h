@@ -4,7 +4,7 @@
 #include "runtime/detector/config.h"
 #include "runtime/intersections/intersections.h"
 
-/* What pairs are looked for with. */
+/* The means to look for pairs. */
 typedef struct waiting_place {
     detector_config *config;
     search_space *space;

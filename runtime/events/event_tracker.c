@@ -18,7 +18,7 @@ struct cscd_event_tracker {
     frame_groups groups;
     size_t max_memory; /* of a frame */
 
-    /* Of the interval that ends in the next frame. */
+    /* Contacts of the interval that ends in the next frame. */
     tracked_contact *contacts;
     size_t contact_count, contact_capacity;
 
@@ -274,7 +274,7 @@ static void drop_contacts(cscd_event_tracker *t) {
     t->contact_count = t->contact_capacity = 0;
 }
 
-/* What the frame has does not fit: it counts as one in which nothing was looked for. */
+/* The findings of the frame do not fit: it counts as one in which nothing was looked for. */
 static cscd_status append_nothing(cscd_event_tracker *t, const frame_input *input, size_t wanted) {
     const size_t contacts = input->contact_count, pairs = input->found != NULL ? input->found->count : 0;
     const frame_input nothing = {.frame = input->frame};

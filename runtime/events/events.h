@@ -1,4 +1,4 @@
-/* What the files of the events share: what is near on a mesh, stamps on it, events, the history of frames, and groups of a frame. */
+/* The files of the events share this: what is near on a mesh, stamps on it, events, the history of frames, and groups of a frame. */
 #pragma once
 
 #include "src/core/memory.h"
@@ -174,7 +174,7 @@ typedef struct stamped_triangle {
     uint32_t triangle, thing;
 } stamped_triangle;
 
-/* How good a place is for looking at a group. */
+/* The rank of a place for looking at a group. */
 typedef enum place_rank { PLACE_OF_PAIR, PLACE_OF_CONTACT, PLACE_OF_CURVE, PLACE_OF_DEPTH } place_rank;
 
 /* A thing is a pair, a piece of a curve, a depth or a contact, numbered in this order. */

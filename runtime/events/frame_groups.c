@@ -304,7 +304,7 @@ static void sum_contacts(frame_groups *g, const frame_input *input, const group_
     }
 }
 
-/* What is known of a pair of parts goes to all its groups. */
+/* All groups of a pair of parts get what is known of it. */
 static void mark_same_solids(frame_groups *g, const cscd_part_pairs *parts) {
     for (size_t i = 0; parts != NULL && i < parts->count; i++) {
         if (!parts->items[i].same_solid) continue;

@@ -1,4 +1,4 @@
-/* How far vertices may go from where they are: on any path, before two features can come together, and on straight lines, up to
+/* Finds how far vertices may go from where they are: on any path, before two features can come together, and on straight lines, up to
  * planes between near pairs. */
 #include "runtime/solver/near_pairs.h"
 #include "runtime/solver/solver.h"

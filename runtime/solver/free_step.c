@@ -1,4 +1,4 @@
-/* How far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
+/* Finds how far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
 #include "runtime/solver/free_step.h"
 
 #include "src/core/vec3.h"

@@ -1,4 +1,4 @@
-/* How far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
+/* Finds how far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
 #pragma once
 
 #include "runtime/narrow_phase/narrow_phase.h"
@@ -44,7 +44,7 @@ cscd_status motion_check(cscd_context *context, const straight_motion *m);
 /* The same, if rounding x0 would move a vertex that is not active. */
 cscd_status motion_check_still(cscd_context *context, const straight_motion *m, const active_set *active);
 
-/* Writes x0 + fraction (x1 - x0), rounded, and where that is asked for rounded to floats; at 0 and 1 x0 and x1 themselves.
+/* Writes x0 + fraction (x1 - x0), rounded, to floats if the caller wants that; at 0 and 1 x0 and x1 themselves.
  * A coordinate that is nearer to 0 than positions may be becomes 0. */
 void motion_at(const straight_motion *m, double fraction, double *out);
 
@@ -56,7 +56,7 @@ double motion_rounding(const straight_motion *m);
 /* Finds contacts between two moments of the motion, the first contact among them. */
 typedef cscd_status motion_test(void *of, const double *from, const double *to, cscd_contacts *out);
 
-/* Which steps are tried: at most `longest`, then a share step_factor of the time of the first contact, and less. */
+/* The steps that are tried: at most `longest`, then a share step_factor of the time of the first contact, and less. */
 typedef struct step_quest {
     cscd_context *context;
     double step_factor, longest;

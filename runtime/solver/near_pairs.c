@@ -27,10 +27,10 @@ void near_pair_load(const double *x, const cscd_stencil *stencil, double points[
 
 /* ---- planes -------------------------------------------------------------------------------------------- */
 
-/* What is given to the two sides of a plane together (lemma 4). */
+/* The two sides of a plane together get this share (lemma 4). */
 static const double planes_share = 1.0 - 0x1p-20;
 
-/* What an obstacle needs, so that rounding does not stop it just before its end. */
+/* An obstacle needs this much more, so that rounding does not stop it just before its end. */
 static const double rounded_up = 1.0 + 0x1p-40;
 
 typedef struct division_work {
@@ -39,7 +39,7 @@ typedef struct division_work {
     division_plane *planes;
 } division_work;
 
-/* How far the two sides want to go beyond where they are, and may go for all other pairs. */
+/* The ways that the two sides want to go beyond where they are, and may go for all other pairs. */
 typedef struct approach {
     double a, b;
 } approach;

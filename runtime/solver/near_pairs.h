@@ -4,7 +4,7 @@
 
 #include "runtime/detector/detector.h"
 
-/* What says how far apart pairs are to stay. */
+/* The rules by which pairs stay apart. */
 typedef struct near_rules {
     const cscd_mesh *mesh;
     const detector_config *config;

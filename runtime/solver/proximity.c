@@ -12,7 +12,7 @@
 
 /* ---- items --------------------------------------------------------------------------------------------- */
 
-/* What items are described by. */
+/* The data that items are described by. */
 typedef struct proximity_scene {
     const cscd_mesh *mesh;
     const double *positions;
@@ -286,7 +286,7 @@ static void sort_pairs(contact_key *keys, contact_key *spare, size_t count) {
     sort_by_number(keys, spare, count, sizeof *keys);
 }
 
-/* What tasks describe, and whom they ask whether the call goes on. */
+/* The items that tasks describe, and the context that they ask whether the call goes on. */
 typedef struct description {
     progress *progress;
     proximity_scene scene;

@@ -1,4 +1,4 @@
-/* What the calls of a solver share: pairs of features that are near each other at one moment, and certified steps. */
+/* The calls of a solver share this: pairs of features that are near each other at one moment, and certified steps. */
 #pragma once
 
 #include "runtime/detector/detector.h"

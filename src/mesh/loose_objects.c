@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A point has no data behind it that would show that its count is meant; so many cost a quarter of a second. */
+/* A point has no data behind it that would show that its count is meant; this many cost a quarter of a second. */
 enum { POINTS_MAX = 1 << 26, VERTICES_OF_WIRE = 256 };
 
 /* ---- descriptions -------------------------------------------------------------------------------------- */
@@ -65,7 +65,7 @@ static cscd_status check_half_space(cscd_context *context, const cscd_object_des
     return CSCD_OK;
 }
 
-/* What belongs to another kind of object. */
+/* Members that belong to another kind of object. */
 static cscd_status check_members(cscd_context *context, const cscd_object_desc *desc, const char *object) {
     if (desc->kind != CSCD_OBJECT_WIRES && (desc->wire_count > 0 || desc->wires != NULL))
         return context_fail(context, CSCD_INVALID_MESH,

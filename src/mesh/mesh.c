@@ -11,7 +11,7 @@
 enum { TRIANGLE_COUNT_MAX = (int)(UINT32_MAX / 3) };
 
 /* Every vertex costs memory and time in many places, whether a triangle has it or not. A host may keep all its
- * vertices in one array, of which a mesh uses a part: so many without a triangle take some ten milliseconds. */
+ * vertices in one array, of which a mesh uses a part: this many without a triangle take some ten milliseconds. */
 enum { SPARE_VERTICES = 1 << 24, SPARE_VERTICES_OF_TRIANGLE = 256 };
 
 /* The mesh that its creator has, and the number of those who hold it. */
@@ -22,7 +22,7 @@ typedef struct shared_mesh {
 
 static void free_mesh(reference_count *references);
 
-/* How messages name an object: "" if it is the only one, else for instance "object 2: ". */
+/* The name of an object in messages: "" if it is the only one, else for instance "object 2: ". */
 typedef struct object_name {
     char text[32];
 } object_name;

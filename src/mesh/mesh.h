@@ -17,7 +17,7 @@ typedef struct loose_objects {
     double (*normals)[3]; /* per object, of half-spaces; NULL: there are none */
 } loose_objects;
 
-/* What descriptions ask for together. */
+/* The sums of what descriptions ask for. */
 typedef struct loose_totals {
     uint64_t wires, points;
 } loose_totals;
@@ -45,7 +45,7 @@ cscd_status mesh_list_loose_objects(cscd_mesh *mesh);
 
 /* ---- the mesh ---------------------------------------------------------------------------------------------- */
 
-/* What it says of the triangles never changes, and any number of objects in any contexts read it at the same time.
+/* Its facts about the triangles never change, and any number of objects in any contexts read it at the same time.
  * Each of them has a copy of this struct, its own view of the mesh, whose context is the one that the object works
  * in: it allocates there, runs tasks there and fails there. Arrays belong to the mesh that they were copied from. */
 struct cscd_mesh {
@@ -135,7 +135,7 @@ typedef struct described_objects {
     loose_totals other_loose;                 /* the same */
 } described_objects;
 
-/* What cscd_mesh_create does, step by step. Copies descriptions of the caller's size to descriptions of this library's. */
+/* The steps of cscd_mesh_create. Copies descriptions of the caller's size to descriptions of this library's. */
 cscd_status mesh_take_objects(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
                               uint32_t count, cscd_object_desc *out);
 

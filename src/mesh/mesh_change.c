@@ -137,7 +137,7 @@ static void copy_normal(const object_source *source, double normal[3]) {
     if (normals != NULL) memcpy(normal, normals[source->object], sizeof normals[0]);
 }
 
-/* Fills an empty mesh with copies of objects of others: all arrays but for their offsets, so the mesh is what
+/* Fills an empty mesh with copies of objects of others: all arrays, with other offsets, so the mesh is what
  * mesh_build_objects makes of their descriptions. Fills in where they go to. On failure, which is OUT_OF_MEMORY without a
  * sentence, the caller destroys the mesh. */
 static cscd_status splice_objects(cscd_mesh *mesh, object_move *moves, uint32_t count) {
@@ -160,7 +160,7 @@ typedef struct change_plan {
     const cscd_mesh *old;
     const cscd_object_change *changes; /* of this library's size */
 
-    /* Of this library's size: the descriptions of objects that are not removed, in the order of the new mesh. */
+    /* The descriptions, of this library's size, of the objects that are not removed, in the order of the new mesh. */
     cscd_object_desc *descs;
 
     uint32_t change_count, desc_count, object_count;

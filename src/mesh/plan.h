@@ -3,7 +3,7 @@
 
 #include "src/mesh/mesh.h"
 
-/* What CSCD_METHOD_AUTO has compared. */
+/* The plans that CSCD_METHOD_AUTO has compared. */
 typedef struct plan_candidates {
     uint32_t count;
     cscd_compared_plan items[8];

@@ -139,7 +139,7 @@ bool views_overlap(const view_grid *a, const view_grid *b, view_clash *out) {
 
 /* ---- views ------------------------------------------------------------------------------------------------- */
 
-/* What both kinds of views have in common; the defaults are filled in. */
+/* The members that both kinds of views have in common; the defaults are filled in. */
 typedef struct layout {
     const char *data;
     size_t size, stride, coordinate_stride, scalar_size;

@@ -52,7 +52,7 @@ typedef struct symbolic_term {
 
 symbolic_term symbolic_orient3d_term(const symbolic_point p[4]);
 
-/* The rest of the matrix of four points: rows, that is, points, and one column less than rows, beside that of
+/* The rest of the matrix of four points: rows, that is, points, and one column less than rows, besides that of
  * ones. The minor's magnitude is the coefficient of the term. */
 typedef struct symbolic_minor {
     uint8_t points[4], columns[3];

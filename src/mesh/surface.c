@@ -111,7 +111,7 @@ int volume_sign_exact(const cscd_mesh *mesh, const double *positions, const uint
 
 /* ---- collapsed components ---------------------------------------------------------------------------------- */
 
-/* Of a component: one of its triangles has an area; one has three vertices of different names. */
+/* Facts about a component: one of its triangles has an area; one has three vertices of different names. */
 enum { SEEN_AREA = 1, SEEN_SURFACE = 2 };
 
 static array_list collapsed_arrays(collapsed_components *c) {

@@ -14,7 +14,7 @@ static const uint8_t SETS_OF_FOUR[] = {0, 1, 2, 4, 8, 10, 12, 16, 17, 20, 32, 33
 
 enum { POINTS_MAX = 4 };
 
-/* What a set of entries leaves of the matrix. */
+/* The part of the matrix that a set of entries leaves. */
 typedef struct minor_of_set {
     uint8_t rows[POINTS_MAX], columns[3];
     int row_count, column_count; /* the column of ones is not counted */

@@ -116,7 +116,7 @@ static const char *say_crossing(FILE *out, const answers *a, const frame_answer 
     return "; ";
 }
 
-/* Whose interiors meet, although no triangles cross. */
+/* Parts whose interiors meet, although no triangles cross. */
 static const char *say_overlaps(FILE *out, const frame_answer *frame, const char *before) {
     if (frame->overlapping > 0) {
         say_pairs(out, before, frame->overlapping, "parts", "overlap");

@@ -115,7 +115,7 @@ static bool any_in_no_part(const part_names *parts, uint32_t triangle_count) {
 }
 
 /* Counts the pairs of parts that are left out, and all, each part with itself among them. What is in no part
- * of a mesh of so many triangles counts as one. */
+ * of a mesh of this many triangles counts as one. */
 static void count_part_pairs(const part_rules *rules, uint32_t triangle_count, size_t *left_out,
                              size_t *all) {
     const uint32_t count = rules->parts->count + any_in_no_part(rules->parts, triangle_count);
@@ -305,7 +305,7 @@ bool ignore_pairs_add_rest(ignore_pairs *pairs, const cscd_intersections *found,
     return separate_components(pairs);
 }
 
-/* What is there twice is no pair at rest: it stays to be reported. */
+/* A duplicate is no pair at rest: it stays to be reported. */
 static bool check_rest(ignore_pairs *pairs, bool by_parts, recording *r, cscd_detector *detector,
                        const double *positions, io_error *error) {
     const cscd_view at = cscd_view_doubles(positions, cscd_mesh_vertex_count(r->mesh));

@@ -91,7 +91,7 @@ static void warn_of_zero_area(const replay *r, uint32_t frame, const cscd_inters
              found->zero_area_triangles, recording_file_triangle(&r->recording, found->first_zero_area));
 }
 
-/* What intersects in a frame, unless nothing was looked for. */
+/* The intersections of a frame, unless nothing was looked for. */
 static bool take_frame(replay *r, uint32_t frame, frame_check *check, frame_state *state, io_error *error) {
     *state = FRAME_UNCHECKED;
     recording_add_hashes(&r->recording, check->hashes);

@@ -20,7 +20,7 @@ typedef struct merge_request {
     char **arguments;
 } merge_request;
 
-/* Says and writes what one run of the whole recording says and writes, byte for byte but for its times and
+/* Says and writes what one run of the whole recording says and writes, byte for byte except its times and
  * its command line. Returns the exit code, that of such a run. */
 int replay_merge(const merge_request *request);
 

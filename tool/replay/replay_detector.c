@@ -148,7 +148,7 @@ bool replay_detector_is_oriented(const replay_detector *d) {
     return d->orientations.region_count > 0;
 }
 
-/* What a contact takes in the library's lists, while they grow and are sorted, and in those of events. */
+/* The bytes that a contact takes in the library's lists, while they grow and are sorted, and in those of events. */
 enum { CONTACT_SIZE = 512 };
 
 /* The cap is for contacts alone: pairs of triangles have their own. */

@@ -1,4 +1,4 @@
-/* What a replay says to people, the sums over its intervals, and the table of stages. */
+/* Prints what a replay says to people, the sums over its intervals, and the table of stages. */
 
 #include "tool/answers/answers.h"
 #include "tool/common/methods.h"
@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* What a user must know before he relies on the contacts. */
+/* Facts that a user must know before he relies on the contacts. */
 static void print_limits(const replay *r) {
     const replay_totals *t = &r->totals;
     if (r->options->min_separation > 0.0)

@@ -19,7 +19,7 @@ static uint64_t hash_list(uint64_t hash, const ignored_pair *items, size_t count
     return count > 0 ? provenance_hash(hash, items, count * sizeof *items) : hash;
 }
 
-/* Of the objects, their parts, and what is left out of them. */
+/* The hash of the objects, their parts, and what is left out of them. */
 static uint64_t hash_model(const replay *r) {
     uint64_t hash = PROVENANCE_HASH_START;
     for (uint32_t i = 0; i < r->recording.object_count; i++) {
@@ -41,7 +41,7 @@ static uint64_t hash_model(const replay *r) {
     return hash_list(hash, ignored->separated, ignored->separated_count);
 }
 
-/* Of what a step depends on: regions and their points. */
+/* The hash of what a step depends on: regions and their points. */
 static uint64_t hash_plan(const replay *r) {
     const cscd_plan *plan = r->plan.plan;
     const cscd_method method = r->plan.steps_by;

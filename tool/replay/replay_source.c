@@ -1,4 +1,4 @@
-/* Where a replay has its intervals and frames from, one after the other. */
+/* The source of a replay's intervals and frames, one after the other. */
 #include "tool/replay/replay_source.h"
 
 #include "tool/replay/shard_file.h"

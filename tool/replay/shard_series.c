@@ -102,7 +102,7 @@ static void take_arguments(shard_series *s, shard_reader *r) {
     r->arguments = NULL;
 }
 
-/* How many intervals a shard has, up to the first that is not whole. */
+/* The number of intervals that a shard has, up to the first that is not whole. */
 static uint32_t count_intervals(shard_reader *r) {
     shard_record kind;
     packed_reader bytes;

@@ -107,7 +107,7 @@ static void take_parts(packed_reader *in, cscd_part_pairs *p) {
     p->items = packed_reader_take_array(in, &p->count, sizeof *p->items);
 }
 
-/* Which lists a frame has. */
+/* The lists that a frame has. */
 enum { HAS_CHECK = 1, HAS_CURVES = 2, HAS_DEPTHS = 4, HAS_PARTS = 8, HAS_TURNED = 16 };
 
 void step_bytes_add_frame(packed_bytes *out, const frame_check *check, uint32_t object_count,

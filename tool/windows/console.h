@@ -1,4 +1,4 @@
-/* What the tool wants of the standard files of its process; Windows alone has to be asked. */
+/* The tool's wishes for the standard files of its process; Windows alone has to be asked. */
 #pragma once
 
 #ifdef _WIN32

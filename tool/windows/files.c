@@ -181,7 +181,7 @@ static bool try_again(int attempt) {
 /* FileRenameInfoEx, which headers have from a later version of Windows on than ours. */
 static const FILE_INFO_BY_HANDLE_CLASS rename_info_ex = (FILE_INFO_BY_HANDLE_CLASS)22;
 
-/* Names the file anew as POSIX does, also where somebody has one of that name open: he keeps what he has
+/* Renames the file as POSIX does, also where somebody has one of that name open: he keeps what he has
  * opened. Windows 10 does so on its own file system; false: this one does not, or it went wrong. */
 static bool rename_as_posix(const wchar_t *from, const wchar_t *to) {
     const size_t size = wcslen(to) * sizeof *to;
@@ -283,7 +283,7 @@ int windows_truncate(const char *path, off_t size) {
     return result;
 }
 
-/* Of the permissions Windows has one here: whether the file may be written. */
+/* Windows has one of the permissions here: whether the file may be written. */
 int windows_chmod(const char *path, unsigned mode) {
     wchar_t *wide = wide_path(path);
     if (wide == NULL) return -1;

@@ -148,7 +148,7 @@ int windows_fstatat(windows_folder *folder, const char *name, struct windows_sta
 
 /* ---- text --------------------------------------------------------------------------------------------- */
 
-/* What is written to it becomes text and size when it is flushed or closed. */
+/* The bytes that are written to it become text and size when it is flushed or closed. */
 FILE *windows_open_memstream(char **text, size_t *size);
 int windows_fflush(FILE *file);
 int windows_fclose(FILE *file);

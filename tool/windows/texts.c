@@ -155,7 +155,7 @@ void windows_qsort_r(void *items, size_t count, size_t size,
     qsort_s(items, count, size, compare_for_user, &order);
 }
 
-/* What the C library of Windows calls otherwise, or not at all. */
+/* Functions that the C library of Windows calls otherwise, or does not have. */
 char *windows_strerror(int cause) {
     static char too_many[] = "Too many open files", not_folder[] = "Not a directory",
                 is_folder[] = "Is a directory", too_long[] = "File name too long",

@@ -1,4 +1,4 @@
-/* Where programs begin on Windows: main gets its arguments as UTF-8. */
+/* Programs begin here on Windows: main gets its arguments as UTF-8. */
 #include "tool/windows/posix.h"
 
 #include "tool/windows/console.h"

@@ -115,7 +115,7 @@ static bool read_set(const gltf_element *attributes, uint32_t set, const gltf_ac
     return true;
 }
 
-/* The sum of a vertex's weights is 1 but for rounding, which would pull it towards the origin. */
+/* The sum of a vertex's weights is 1 up to rounding, which would pull it towards the origin. */
 static void scale_weights(gltf_vertices *vertices) {
     for (uint32_t i = 0; i < vertices->positions.count; i++) {
         double *weights = vertices->weights + (size_t)i * vertices->influences, sum = 0;

@@ -1,4 +1,4 @@
-/* How a process ended: with a code, since there are no signals. */
+/* The way in which a process ended: with a code, since there are no signals. */
 #pragma once
 
 #define WIFSIGNALED(status) ((void)(status), 0)
