@@ -801,7 +801,7 @@ PYTEST_LINKS := $(addprefix $(BUILD)/,$(basename $(filter %.py,$(TEST_SOURCES)))
 $(PYTEST_LINKS): FORCE
 	@[ $@ -ef tests/run_pytest.py ] || { mkdir -p $(@D) && ln -sfn $(CURDIR)/tests/run_pytest.py $@; }
 
-# By its name a test finds its file: tests/support/room.h.
+# By its name a test finds its file: tests/support/test.h.
 test_file = $(if $(filter test_%,$(notdir $(1))),-DTEST_FILE='"$(basename $(notdir $(1)))"')
 
 # Programs beside those of rooms.
@@ -823,7 +823,7 @@ TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_s
 $(BUILD)/tests/core/room: $(TEST_LEVELS)
 
 # Whether there are baselines or sensors is a word on the command line, which a compiler cache looks at; at __has_include it does not.
-$(OBJECTS)/tests/support/methods.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
+$(OBJECTS)/tests/support/variants.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_BASELINES)
 $(OBJECTS)/tool/tool.o: CFLAGS_ALL += $(if $(HAS_SENSORS),-DWITH_SENSORS)
 
 # Readers that one command has for itself, and what damaged files and those of libFuzzer go through.

@@ -1,10 +1,10 @@
 /* Methods iccd and cones find the contacts of method none, bit for bit, on random intervals and with all options; as
  * published, iccd loses some. */
 #include "cscd/research.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <string.h>
 

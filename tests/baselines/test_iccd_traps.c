@@ -1,9 +1,9 @@
 /* Methods iccd and cones in cases that are easily wrong: each scene breaks one condition of the theorems in
  * docs/theory/iccd.md, and has contacts that a test without that condition would lose. */
 #include "cscd/research.h"
-#include "tests/support/methods.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* Normal cones contain every normal of moving triangles, by a reference in long double; as published they
  * do not. */
 #include "runtime/baselines/patches.h"
-#include "tests/support/levels.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The orientation check of the thesis against values sampled over the interval. */
 #include "runtime/baselines/published.h"
-#include "tests/support/culling/first_contacts.h"
+#include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -2,7 +2,6 @@
  * which edges the parent has too, which patches are disks, and how the loops of these run. */
 #include "runtime/baselines/patches.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/mesh_shapes.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -285,7 +284,7 @@ TEST(disks_of_bodies) {
 
 /* Positions are random, so trees cut the mesh into patches of any shape: with holes, touching at vertices,
  * or in loose parts. */
-static void check_shape(const shape *given, uint32_t seed) {
+static void check_shape(const mesh_shape *given, uint32_t seed) {
     double positions[3 * 400];
     assert_true(given->vertex_count <= 400);
     for (uint32_t i = 0; i < given->vertex_count * 3; i++)
@@ -297,18 +296,18 @@ static void check_shape(const shape *given, uint32_t seed) {
 TEST(patches_of_any_shape) {
     for (uint32_t seed = 0; seed < 10; seed++) {
         for (int kind = 0; kind < 4; kind++) {
-            shape grid = {0};
+            mesh_shape grid = {0};
             shape_add_grid(&grid, 5, 6, kind % 2 == 1, kind / 2 == 1);
             check_shape(&grid, seed);
         }
-        shape strip = {0}, pair = {0};
+        mesh_shape strip = {0}, pair = {0};
         shape_add_moebius_strip(&strip, 9);
         check_shape(&strip, seed);
         shape_add_tetrahedron(&pair, 0, 1, 2, 3);
         shape_add_tetrahedron(&pair, 3, 4, 5, 6);
         shape_add_quad(&pair, 7, 8, 9, 10);
         check_shape(&pair, seed);
-        shape fans = {0}; /* three triangles share an edge */
+        mesh_shape fans = {0}; /* three triangles share an edge */
         for (uint32_t i = 2; i < 5; i++) shape_add_triangle(&fans, 0, 1, i);
         check_shape(&fans, seed);
     }
@@ -316,7 +315,7 @@ TEST(patches_of_any_shape) {
 
 /* ---- whole meshes: the root -------------------------------------------------------------------------- */
 
-static bool root_is_disk(const shape *given) {
+static bool root_is_disk(const mesh_shape *given) {
     double positions[3 * 400] = {0};
     patch_subject f = subject_create(
         cscd_object_of_triangles(given->vertex_count, given->triangle_count, given->triangles[0]), positions,
@@ -327,7 +326,7 @@ static bool root_is_disk(const shape *given) {
 }
 
 TEST(roots_that_are_disks_and_not) {
-    shape sheet = {0}, ring = {0}, torus = {0}, strip = {0}, bow_tie = {0}, cube = {0}, beside = {0};
+    mesh_shape sheet = {0}, ring = {0}, torus = {0}, strip = {0}, bow_tie = {0}, cube = {0}, beside = {0};
     shape_add_grid(&sheet, 4, 5, false, false);
     assert_true(root_is_disk(&sheet));
     shape_add_grid(&ring, 4, 5, false, true);

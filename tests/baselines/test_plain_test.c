@@ -2,7 +2,7 @@
 #include "tests/support/test.h"
 #include "runtime/baselines/published.h"
 #include "src/core/baseline_library.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 #include <math.h>
 

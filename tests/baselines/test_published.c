@@ -1,11 +1,11 @@
 /* The published culling loses first contacts, which the detector's own rules do not (test_culling.c),
  * reports that it may, and culls nothing with a minimum separation. */
 #include "cscd/research.h"
-#include "tests/support/culling/first_contacts.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,10 +2,10 @@
  * contours of unequal length. */
 #include "preprocess/baselines/baselines.h"
 #include "preprocess/baselines/published_cuts.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/random.h"
-#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <math.h>

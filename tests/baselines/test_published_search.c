@@ -1,12 +1,11 @@
 /* The published search against the detector's own: without culling it finds the same contacts, bit for bit; with all steps ours it loses
  * no first contact; each step alone is what it says. */
 #include "cscd/research.h"
-#include "tests/support/culling/first_contacts.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
+#include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,9 +2,9 @@
  * rest. */
 #include "cscd/research.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/methods.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* A call that is cancelled while it builds trees ends there, leaves none, and may be repeated. */
 #include "runtime/detector/detector.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 

@@ -3,9 +3,9 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 enum { OBJECTS = 100 }; /* besides one; a block has eight children */
 

@@ -1,8 +1,8 @@
 /* Trees that decay over a long deformation are rebuilt once, with the same result for any number of
  * threads. */
 #include "cscd/cscd.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

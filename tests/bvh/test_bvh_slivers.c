@@ -2,9 +2,9 @@
 #include "models/shapes/extreme_shapes.h"
 #include "src/mesh/mesh.h"
 #include "src/mesh/predicates.h"
+#include "tests/support/calls.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

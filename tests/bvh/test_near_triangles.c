@@ -2,7 +2,7 @@
 #include "runtime/bvh/bvh.h"
 #include "runtime/ccd/ccd.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
  * time, also where features are degenerate or of sizes far apart. */
 #include "runtime/ccd/ccd.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/levels.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <string.h>
 

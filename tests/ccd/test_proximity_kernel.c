@@ -1,11 +1,11 @@
 /* The kernel that decides by the start of a motion which features are near and which stay apart: never
  * against the test of one pair, whose verdicts it anticipates; the same bits on every level. */
 #include "runtime/ccd/ccd.h"
-#include "tests/support/levels.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,7 @@
 /* Whatever floating-point environment the host has, results are those of the default one, bit for bit; callbacks see the
  * host's, and every call gives it back. */
 #include "src/core/context.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/host_callback.h"
+#include "tests/support/calls.h"
 #include "tests/support/panels.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"

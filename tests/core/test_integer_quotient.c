@@ -1,6 +1,6 @@
 /* The nearest double to the quotient of two long integers: multiples of numbers whose quotient the processor rounds. */
 #include "src/core/integer.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

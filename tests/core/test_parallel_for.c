@@ -1,8 +1,8 @@
 /* With a parallel loop of the host's own, the context starts no threads and gives the same results. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/methods.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 #include "tests/support/workload.h"
 
 #include <dirent.h>

@@ -4,10 +4,9 @@
 #include "cscd/research.h"
 #include "src/core/context.h"
 #include "src/core/timer.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 #include "tests/support/workload.h"
 
 #include <math.h>

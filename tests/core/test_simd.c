@@ -2,7 +2,7 @@
  * of the ranges, for zeros of both signs and for NaN. */
 #include "src/core/system.h"
 #include "tests/core/simd_operations.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <float.h>

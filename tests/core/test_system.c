@@ -1,6 +1,6 @@
 /* What the library asks of the system. */
 #include "src/core/system.h"
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 
 #include <stdint.h>

@@ -1,8 +1,8 @@
 /* Method auto culls where it pays: whatever it chooses, and whenever, results are the same. */
 #include "runtime/detector/detector.h"
-#include "tests/support/culling/exact_numbers.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

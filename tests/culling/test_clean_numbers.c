@@ -2,8 +2,8 @@
  * winding number, counted exactly, and each finds what is found without culling. */
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
-#include "tests/support/culling/exact_numbers.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

@@ -25,9 +25,9 @@
  * of its floor. */
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
-#include "tests/support/culling/exact_numbers.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"

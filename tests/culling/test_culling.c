@@ -1,7 +1,7 @@
 /* Culling by orientation on random intervals: mode all equals the method that culls nothing, and mode
  * earliest that without later contacts; the published rules lose some (test_published.c). */
-#include "tests/support/culling/first_contacts.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/oracle.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static reference reference_create(const scene *s) {
     return r;
 }
 
-static void reference_destroy(reference *r) {
+static void reference_free(reference *r) {
     cscd_detector_destroy(r->detector);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
@@ -148,7 +148,7 @@ static void run_family(scene_family family, culling_tally *sum) {
         run_variant(&r, &interval, second, CSCD_MODE_EARLIEST, seed, &own);
         if (seed % 8 == 0) run_variant(&r, &interval, none, CSCD_MODE_EARLIEST, seed, &own);
         run_variant(&r, &interval, seed % 4 < 2 ? variants[0] : second, CSCD_MODE_ALL, seed, &own);
-        reference_destroy(&r);
+        reference_free(&r);
     }
     print_tally(scene_family_name(family), &own);
     sum->intervals += own.intervals;
@@ -197,7 +197,7 @@ TEST(ignored_contacts_hide_none) {
         kept += found[0].count;
         cscd_detector_destroy(detectors[0]);
         cscd_detector_destroy(detectors[1]);
-        reference_destroy(&r);
+        reference_free(&r);
     }
     assert_true(kept > 0);
 }

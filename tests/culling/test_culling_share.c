@@ -1,8 +1,8 @@
 /* Culling is really on: on a human-like body that moves without contact, charge and single leave at most a
  * quarter of the triangle pairs, and one static check serves the whole recording. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

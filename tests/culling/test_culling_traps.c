@@ -3,7 +3,7 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

@@ -1,7 +1,7 @@
 /* Mode earliest where three sheets come together: the pair of the outer two is culled, and only the contacts with the
  * middle one uncover it. */
 #include "cscd/cscd.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

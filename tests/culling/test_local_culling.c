@@ -5,10 +5,10 @@
 #include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
 #include "tests/support/bvh/direction_gap.h"
-#include "tests/support/culling/exact_numbers.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
-#include "tests/support/sequences.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
 #include <math.h>

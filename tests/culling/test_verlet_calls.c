@@ -2,9 +2,8 @@
  * again does what it would have done at once. */
 #include "runtime/detector/detector.h"
 #include "src/core/context.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/culling/march.h"
-#include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

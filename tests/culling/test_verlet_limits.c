@@ -1,8 +1,8 @@
 /* Lists of pairs at their limits: two features that come together, each by nearly the skin, and when a list that was of no use
  * is made again. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -4,9 +4,9 @@
 #include "cscd/research.h"
 #include "runtime/bvh/bvh_parts.h"
 #include "runtime/detector/detector.h"
-#include "tests/support/culling/exact_numbers.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/culling/march.h"
-#include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

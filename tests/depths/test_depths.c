@@ -4,9 +4,9 @@
 #include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
 #include "tests/support/intersections/body_measures.h"
-#include "tests/support/methods.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

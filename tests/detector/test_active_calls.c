@@ -2,11 +2,10 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "tests/support/active_twins.h"
-#include "tests/support/equal_panels.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
+#include "tests/support/panels.h"
 #include "tests/support/rig.h"
-#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -315,11 +314,11 @@ TEST(pairs_wait_without_active_vertices) {
     for (int i = 0; i < 2; i++) {
         equal_panels p;
         const uint32_t vertices[2] = {0, 1};
-        panels_begin(&p, separations[i], 2);
+        equal_panels_begin(&p, separations[i], 2);
         cscd_detector_options options = cscd_detector_defaults();
         options.min_separation = separations[i];
         options.seams = p.seams[0];
-        options.seam_count = PANEL;
+        options.seam_count = EQUAL_PANEL;
         memset(&twins, 0, sizeof twins);
         active_twins_begin(&twins, p.detector, &options, false);
         twins.set = true;
@@ -331,7 +330,7 @@ TEST(pairs_wait_without_active_vertices) {
         active_twins_check(&twins, p.x0);
         active_twins_near(&twins, p.x0, 0.2);
         size_t waiting = twins.waiting;
-        assert_true(waiting > PANEL);
+        assert_true(waiting > EQUAL_PANEL);
         twins.set = false;
         active_twins_tell(&twins);
         active_twins_step(&twins, p.x0, p.x0);
@@ -339,6 +338,6 @@ TEST(pairs_wait_without_active_vertices) {
         assert_int_equal(twins.waiting, 2 * waiting);
         assert_int_equal(twins.contacts + twins.intersections, 0);
         active_twins_end(&twins);
-        panels_end(&p);
+        equal_panels_end(&p);
     }
 }

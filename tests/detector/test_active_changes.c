@@ -1,8 +1,8 @@
 /* Active vertices while trees are built again, meshes change, and detectors are cloned. */
 #include "cscd/cscd.h"
 #include "tests/support/active_twins.h"
+#include "tests/support/calls.h"
 #include "tests/support/moving_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

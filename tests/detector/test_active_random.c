@@ -3,15 +3,15 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "tests/support/active_twins.h"
-#include "tests/support/culling/exact_numbers.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
 #include "tests/support/rig.h"
-#include "tests/support/sequences.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <string.h>
 

@@ -1,10 +1,9 @@
 /* A detector that has moved over to another mesh finds what a new one finds there, and keeps what is untouched. */
+#include "tests/support/calls.h"
 #include "tests/support/moving_scene.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
-#include "tests/support/torn_model.h"
 
 #include <math.h>
 #include <stdlib.h>

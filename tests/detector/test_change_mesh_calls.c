@@ -1,9 +1,8 @@
 /* What a detector keeps when it moves over to another mesh, and what it refuses. */
 #include "runtime/detector/detector.h"
 #include "src/mesh/mesh_change.h"
+#include "tests/support/calls.h"
 #include "tests/support/moving_scene.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,6 @@
 /* What waits in a detector that moves over to another mesh: neighbours in seams that tear, and what was uncovered before
  * the change but not seen. */
-#include "tests/support/counting_allocator.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

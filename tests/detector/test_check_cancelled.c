@@ -1,7 +1,7 @@
 /* A static check that is cancelled when all is found leaves nothing behind that a later step could believe. */
 #include "cscd/research.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

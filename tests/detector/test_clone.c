@@ -1,9 +1,8 @@
 /* A second detector on one mesh: it begins with what the first one knows, and goes its own way. */
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
-#include "tests/support/sequences.h"
-#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <pthread.h>

@@ -1,9 +1,7 @@
 /* Contacts summed up by pair of parts: against sums that look at the whole list anew for every pair of parts. */
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/packed.h"
 #include "tests/support/random.h"
-#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

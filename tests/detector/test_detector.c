@@ -1,8 +1,7 @@
 /* The detector with several threads, repeated steps, ignored pairs, and bad arguments. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

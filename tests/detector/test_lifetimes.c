@@ -1,7 +1,6 @@
 /* Objects hold what they need: they may be destroyed in any order, and what is left goes on working. */
 #include "cscd/cscd.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <pthread.h>

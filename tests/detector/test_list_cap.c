@@ -2,13 +2,12 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <stdio.h>
 #include <string.h>

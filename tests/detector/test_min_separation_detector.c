@@ -1,9 +1,8 @@
 /* Minimum separation through the detector: every method equals brute force, any thread count gives the same
  * bits, and a larger distance only adds pairs. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solver/free_step_check.h"

@@ -2,12 +2,11 @@
  * new rules uncover while they touch wait. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/methods.h"
+#include "tests/support/calls.h"
 #include "tests/support/object_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
-#include "tests/support/waiting_oracle.h"
+#include "tests/support/variants.h"
 
 #include <string.h>
 

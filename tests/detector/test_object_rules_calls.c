@@ -1,14 +1,13 @@
 /* Rules for objects beside contacts: moments, line searches, and what is refused. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/methods.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/object_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/panels.h"
-#include "tests/support/refusal.h"
 #include "tests/support/rig.h"
-#include "tests/support/start_states.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Every method in mode all equals brute force over features, on hundreds of random intervals. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "tests/support/calls.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 

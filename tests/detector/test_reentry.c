@@ -1,9 +1,7 @@
 /* One call at a time in a context: a second one, from a callback or another thread, is refused and changes nothing. Objects
  * that are destroyed meanwhile live until the call ends. */
 #include "src/core/context.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/host_callback.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/panels.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* One mesh for several contexts, on several threads at once: it never changes, each object works in its own context,
  * and the last one to let go gives the memory back. */
 #include "cscd/cscd.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

@@ -1,8 +1,8 @@
 /* Connectivity that changes while the context lives: sheets that tear, regions carried over, memory. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

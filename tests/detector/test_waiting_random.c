@@ -1,13 +1,12 @@
 /* Random changes of seams, ignored pairs and rules on a live detector, against brute force and a list of what waits. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/culling/exact_numbers.h"
-#include "tests/support/methods.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/object_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
-#include "tests/support/waiting_oracle.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

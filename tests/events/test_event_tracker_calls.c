@@ -1,6 +1,6 @@
 /* Trackers with mistakes, failing allocations and long recordings. */
 #include "runtime/events/events.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/events/recording_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

@@ -3,7 +3,7 @@
  * frames belong to the mesh beside them that ends in .obj. fuzz_readers --replay FOLDER... for all files of folders that are called as
  * their formats. The file that is read when the program dies is left where the first line says. */
 #include "tests/fuzz/readings.h"
-#include "tests/support/io/byte_damage.h"
+#include "tests/support/files.h"
 #include "tool/io/io.h"
 
 #include <dirent.h>

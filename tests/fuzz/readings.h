@@ -1,7 +1,7 @@
 /* What reads files of strangers: each format with its reader, and what must hold whatever a file says. */
 #pragma once
 
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tool/io/mesh_file.h"
 
 #include <stdbool.h>

@@ -3,7 +3,7 @@
 #include "src/core/vec3.h"
 #include "src/mesh/surface.h"
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

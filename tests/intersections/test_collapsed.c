@@ -3,13 +3,12 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "src/mesh/predicates.h"
-#include "tests/support/collapsed_oracle.h"
-#include "tests/support/methods.h"
+#include "tests/support/calls.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <string.h>
 

@@ -14,8 +14,8 @@ static traced_scene traced; /* large; one test at a time */
 
 /* Are these edges one, because they are sewn? */
 static bool edges_are_one(uint32_t a, uint32_t b) {
-    const grid_scene *scene = &traced.scene;
-    const uint32_t *p = scene->mesh->edges[a], *q = scene->mesh->edges[b], *names = scene->names;
+    const grid_scene *grid = &traced.scene;
+    const uint32_t *p = grid->mesh->edges[a], *q = grid->mesh->edges[b], *names = grid->names;
     return (names[p[0]] == names[q[0]] && names[p[1]] == names[q[1]]) ||
            (names[p[0]] == names[q[1]] && names[p[1]] == names[q[0]]);
 }

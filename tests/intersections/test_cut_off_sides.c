@@ -1,6 +1,6 @@
 /* What curves cut off of crumpled sheets, by sides that are spread over the vertices, and points that are counted. */
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,10 +2,10 @@
  * memory, and options that are wrong. */
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
 #include "tests/support/intersections/crossing_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/rig.h"
-#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <math.h>

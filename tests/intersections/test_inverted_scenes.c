@@ -1,6 +1,6 @@
 /* What is said of a random scene is said of it with some of its components turned inside out, too. */
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

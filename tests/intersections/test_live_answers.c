@@ -2,8 +2,8 @@
  * points and half-spaces stand about, and only some vertices are active. A detector that leaves the same pairs out by its
  * function says the same, and so does one that was made this moment. */
 #include "tests/support/active_twins.h"
+#include "tests/support/calls.h"
 #include "tests/support/intersections/answer_lists.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

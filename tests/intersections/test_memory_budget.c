@@ -2,10 +2,10 @@
  * what is left out is said and is the same for any number of threads and after any other calls, and memory stays within
  * the budget and 64 bytes for each pair. */
 #include "cscd/events.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/intersections/answer_lists.h"
 #include "tests/support/intersections/tangles.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Components that are inside out, alone, beside and in each other: which are taken as turned around, by hand. */
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

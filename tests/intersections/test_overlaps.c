@@ -1,7 +1,7 @@
 /* Areas and volumes of overlaps: boxes by hand, bodies of all kinds by columns, and what is inside out; curves that touch. */
 #include "tests/support/intersections/body_rig.h"
 #include "tests/support/intersections/column_count.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

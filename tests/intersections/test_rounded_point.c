@@ -1,5 +1,5 @@
 /* Points of curves without integers: the same bits as with integers, or none. */
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include "runtime/intersections/named_surface.h"

@@ -3,11 +3,11 @@
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
-#include "tests/support/collapsed_oracle.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/culling/clean_triangles.h"
+#include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
-#include "tests/support/start_states.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -3,9 +3,9 @@
  * are disjoint. */
 #include "runtime/intersections/static_check.h"
 #include "src/mesh/predicates.h"
-#include "tests/support/levels.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdio.h>

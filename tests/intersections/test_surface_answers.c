@@ -1,10 +1,9 @@
 /* Curves, patches, overlaps and depths through the public API: the same for any method and number of threads, without what
  * is left out, refused where they make no sense, without memory, and with none in a steady state. */
 #include "cscd/research.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/intersections/answer_lists.h"
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,10 +2,10 @@
  * others give all their pairs, each of them once. */
 #include "runtime/intersections/static_check.h"
 #include "src/mesh/predicates.h"
-#include "tests/support/levels.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

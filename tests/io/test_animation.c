@@ -11,7 +11,7 @@ static frame_fixture_bytes cache_bytes(bool mdd) {
 }
 
 static temp_path write_cache(bool mdd, const frame_fixture_bytes *bytes) {
-    return frame_fixture_write(&frame_fixture_folder, mdd ? "cache.mdd" : "cache.pc2", bytes);
+    return frame_fixture_write(&own_folder, mdd ? "cache.mdd" : "cache.pc2", bytes);
 }
 
 TEST(reads_in_any_order) {
@@ -76,4 +76,4 @@ TEST(refuses_what_is_no_animation) {
     animation_close(NULL);
 }
 
-AROUND_EACH(frame_fixture_make_folder, frame_fixture_remove_folder)
+AROUND_EACH(own_folder_make, own_folder_remove)

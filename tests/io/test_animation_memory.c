@@ -1,7 +1,7 @@
 /* The memory of animations: every allocation fails once, and the peak does not grow with the number of
  * frames. */
+#include "tests/support/files.h"
 #include "tests/support/io/frame_fixture.h"
-#include "tests/support/io_allocations.h"
 #include "tests/support/test.h"
 #include "tool/io/io.h"
 #include "tool/io/point_cache.h"
@@ -22,14 +22,14 @@ enum {
 
 static int remove_folder(void **state) {
     io_allocations_left = -1;
-    return frame_fixture_remove_folder(state);
+    return own_folder_remove(state);
 }
 
 static void write_frames(void) {
     char name[32];
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         snprintf(name, sizeof name, "f%u.obj", FIRST + frame);
-        frame_fixture_write_mesh(&frame_fixture_folder, name, VERTICES, frame);
+        frame_fixture_write_mesh(&own_folder, name, VERTICES, frame);
     }
 }
 
@@ -46,7 +46,7 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, i
         assert_int_equal(done, !io_allocation_failed);
         if (done) break;
         assert_null(opened);
-        frame_fixture_check_error(&error, frame_fixture_folder.path, "out of memory", NULL);
+        frame_fixture_check_error(&error, own_folder.path, "out of memory", NULL);
     }
     assert_true(successes >= least);
     assert_int_equal(animation_frame_number(opened, 0), first);
@@ -57,17 +57,17 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, i
 
 TEST(point_cache_survives_failed_allocations) {
     const frame_fixture_bytes bytes = frame_fixture_pc2(VERTICES, 3);
-    const temp_path path = frame_fixture_write(&frame_fixture_folder, "cache.pc2", &bytes);
+    const temp_path path = frame_fixture_write(&own_folder, "cache.pc2", &bytes);
     const char *const paths[] = {path.text};
     fail_every_allocation(paths, 1, 0, 2);
 }
 
 TEST(sequences_survive_failed_allocations) {
     write_frames();
-    const temp_path pattern = temp_file_path(&frame_fixture_folder, "f%d.obj"),
-                    first = temp_file_path(&frame_fixture_folder, "f10.obj");
-    const temp_path second = temp_file_path(&frame_fixture_folder, "f11.obj");
-    const char *const pattern_paths[] = {pattern.text}, *const folder_paths[] = {frame_fixture_folder.path};
+    const temp_path pattern = temp_file_path(&own_folder, "f%d.obj"),
+                    first = temp_file_path(&own_folder, "f10.obj");
+    const temp_path second = temp_file_path(&own_folder, "f11.obj");
+    const char *const pattern_paths[] = {pattern.text}, *const folder_paths[] = {own_folder.path};
     const char *const list_paths[] = {first.text, second.text};
     fail_every_allocation(pattern_paths, 1, FIRST, FRAMES + 4);
     fail_every_allocation(folder_paths, 1, FIRST, FRAMES + 4);
@@ -75,7 +75,7 @@ TEST(sequences_survive_failed_allocations) {
 }
 
 TEST(reading_survives_failed_allocations) {
-    const temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f0.obj", VERTICES, 0);
+    const temp_path path = frame_fixture_write_mesh(&own_folder, "f0.obj", VERTICES, 0);
     animation *opened = frame_fixture_open(path.text, VERTICES);
     double positions[VERTICES * 3];
     io_error error;
@@ -94,7 +94,7 @@ TEST(reading_survives_failed_allocations) {
 }
 
 TEST(writer_survives_a_failed_allocation) {
-    const temp_path path = temp_file_path(&frame_fixture_folder, "cache.pc2");
+    const temp_path path = temp_file_path(&own_folder, "cache.pc2");
     point_cache_writer *writer = NULL;
     io_error error;
     io_allocations_left = 0;
@@ -111,7 +111,7 @@ enum { LARGE = 2000 };
 static double large_frame[LARGE * 3];
 
 static temp_path write_large(const char *name, uint32_t frame_count) {
-    const temp_path path = temp_file_path(&frame_fixture_folder, name);
+    const temp_path path = temp_file_path(&own_folder, name);
     point_cache_writer *writer;
     io_error error;
     assert_true(point_cache_writer_open(path.text, LARGE, frame_count, &writer, &error));
@@ -151,4 +151,4 @@ TEST(peak_does_not_grow_with_the_frames) {
     }
 }
 
-AROUND_EACH(frame_fixture_make_folder, remove_folder)
+AROUND_EACH(own_folder_make, remove_folder)

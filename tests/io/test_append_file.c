@@ -1,5 +1,5 @@
 /* A record that a full disk lets through in part is taken back. */
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tool/io/output_file.h"
 

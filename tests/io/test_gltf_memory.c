@@ -1,8 +1,7 @@
 /* glTF files when memory fails, and when they are damaged; the frames of an animation take no memory of their own. */
+#include "tests/support/files.h"
 #include "tests/support/io/file_damage.h"
 #include "tests/support/io/gltf_fixture.h"
-#include "tests/support/io_allocations.h"
-#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 #include "tool/io/animation.h"
 #include "tool/io/io.h"

@@ -1,6 +1,6 @@
 /* Mesh files: devices, pipes, long paths, counts up to the limits, garbage, and writing OBJ. */
+#include "tests/support/files.h"
 #include "tests/support/io/mesh_check.h"
-#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 #include "tool/io/file_reader.h"
 #include "tool/io/io.h"

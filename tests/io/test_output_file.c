@@ -1,7 +1,7 @@
 /* Output files: an older file stays until the new one is whole, links stay links, devices and pipes are written to. */
 #include "tool/io/output_file.h"
 
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 
 #include <dirent.h>

@@ -1,5 +1,5 @@
 /* Plan files to whose faces somebody has added properties: they are skipped, whatever a mesh would take them for. */
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tool/io/ply.h"
 

@@ -1,7 +1,6 @@
 /* Plan files: what is written comes back bit for bit; other meshes and damaged files are refused. */
-#include "tests/support/io_allocations.h"
-#include "tests/support/own_folder.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
 #include "tool/io/io.h"
@@ -32,7 +31,7 @@ static cscd_mesh *mesh_of(cscd_context *context, const recorded *shape) {
 }
 
 static saved save_plan(recorded shape, cscd_method method) {
-    saved s = {.shape = shape, .path = temp_file_path(&folder, "a.plan.ply")};
+    saved s = {.shape = shape, .path = temp_file_path(&own_folder, "a.plan.ply")};
     assert_int_equal(cscd_context_create(NULL, &s.context), CSCD_OK);
     s.mesh = mesh_of(s.context, &shape);
     cscd_plan_options options = cscd_plan_defaults();
@@ -158,13 +157,13 @@ TEST(another_mesh_is_refused) {
 
 TEST(nothing_to_read_is_refused) {
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
-    temp_path mesh = recorded_write_mesh(&folder, "mesh.ply", &s.shape, 0);
-    expect_refused(&s, temp_file_path(&folder, "none.ply").text, TEXTS("No such file"));
-    expect_refused(&s, folder.path, TEXTS("directory"));
+    temp_path mesh = recorded_write_mesh(&own_folder, "mesh.ply", &s.shape, 0);
+    expect_refused(&s, temp_file_path(&own_folder, "none.ply").text, TEXTS("No such file"));
+    expect_refused(&s, own_folder.path, TEXTS("directory"));
     expect_refused(&s, mesh.text, TEXTS("lacks 'comment cscd plan'", "expected a plan"));
     assert_false(plan_file_is_plan(mesh.text));
     assert_false(plan_file_is_plan("/dev/null"));
-    assert_false(plan_file_is_plan(temp_file_path(&folder, "none.ply").text));
+    assert_false(plan_file_is_plan(temp_file_path(&own_folder, "none.ply").text));
     saved_free(&s);
 }
 
@@ -176,7 +175,7 @@ TEST(every_truncation_is_refused) {
     char *bytes = temp_file_read(s.path.text, &size), *end = strstr(bytes, "end_header");
     for (size_t cut = 0; cut < size; line += bytes[cut++] == '\n') {
         char place[40];
-        temp_path path = temp_file_write(&folder, "cut.ply", bytes, cut);
+        temp_path path = temp_file_write(&own_folder, "cut.ply", bytes, cut);
         snprintf(place, sizeof place, "cut.ply:%zu: ", line);
         expect_refused(&s, path.text,
                        bytes + cut < end + 10 ? TEXTS(place) : TEXTS(": byte ", "file ends inside"));
@@ -192,7 +191,7 @@ TEST(every_flipped_bit_is_survived) {
     char *bytes = temp_file_read(s.path.text, &size);
     for (size_t i = 0; i < size * 8; i++) {
         bytes[i / 8] = (char)(bytes[i / 8] ^ 1 << i % 8);
-        temp_path path = temp_file_write(&folder, "bit.ply", bytes, size);
+        temp_path path = temp_file_write(&own_folder, "bit.ply", bytes, size);
         bytes[i / 8] = (char)(bytes[i / 8] ^ 1 << i % 8);
         cscd_plan *plan = NULL;
         io_error error = {""};
@@ -232,7 +231,7 @@ static temp_path write_text(const saved *s, const char *text) {
     if (mark == NULL) mark = text + strlen(text);
     int size = snprintf(bytes, sizeof bytes, "%.*s%s%s", (int)(mark - text), text, *mark != '\0' ? hash : "",
                         *mark != '\0' ? mark + 2 : "");
-    return temp_file_write(&folder, "text.ply", bytes, (size_t)size);
+    return temp_file_write(&own_folder, "text.ply", bytes, (size_t)size);
 }
 
 static saved tetrahedron_mesh(void) {
@@ -339,7 +338,7 @@ TEST(what_cannot_be_written_is_not_left) {
     saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     uint8_t colours[48] = {0};
     io_error error = {""};
-    temp_path nowhere = temp_file_path(&folder, "no/such.ply");
+    temp_path nowhere = temp_file_path(&own_folder, "no/such.ply");
     assert_false(plan_file_write(nowhere.text, s.mesh, s.shape.frames, s.plan, colours, &error));
     assert_non_null(strstr(error.text, "no/such.ply: cannot write: No such file"));
     assert_false(plan_file_write("/dev/full", s.mesh, s.shape.frames, s.plan, colours, &error));

@@ -1,6 +1,6 @@
 /* The point cache writer: the exact bytes, and no file left behind by a failure. */
+#include "tests/support/files.h"
 #include "tests/support/io/frame_fixture.h"
-#include "tests/support/own_folder.h"
 #include "tests/support/test.h"
 #include "tool/io/point_cache.h"
 
@@ -62,7 +62,7 @@ TEST(writes_what_the_format_says) {
     frame_fixture_put_float(&expected[0], 24, 1.0F, false);
     static const char *const names[] = {"cache.pc2", "cache.MDD"};
     for (size_t i = 0; i < 2; i++) {
-        const temp_path path = temp_file_path(&folder, names[i]);
+        const temp_path path = temp_file_path(&own_folder, names[i]);
         write_fixture(path.text);
         const frame_fixture_bytes written = read_bytes(path.text);
         assert_int_equal(written.size, expected[i].size);
@@ -72,13 +72,13 @@ TEST(writes_what_the_format_says) {
 
 TEST(replaces_an_existing_file) {
     static const char old[1000] = "old";
-    const temp_path path = temp_file_write(&folder, "cache.pc2", old, sizeof old);
+    const temp_path path = temp_file_write(&own_folder, "cache.pc2", old, sizeof old);
     write_fixture(path.text);
     assert_int_equal(read_bytes(path.text).size, 32 + FRAMES * VERTICES * 12);
 }
 
 TEST(rounds_to_float) {
-    const temp_path path = temp_file_path(&folder, "cache.mdd");
+    const temp_path path = temp_file_path(&own_folder, "cache.mdd");
     point_cache_writer *writer = open_writer(path.text, 1, 1);
     const double written[] = {0.1, -(double)FLT_MAX, 1e-300};
     io_error error;
@@ -93,7 +93,7 @@ TEST(rounds_to_float) {
 
 TEST(refuses_what_float_cannot_hold) {
     static const double values[] = {NAN, INFINITY, -1e39};
-    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    const temp_path path = temp_file_path(&own_folder, "cache.pc2");
     for (size_t i = 0; i < 3; i++) {
         point_cache_writer *writer = open_writer(path.text, VERTICES, FRAMES);
         io_error error;
@@ -113,7 +113,7 @@ TEST(refuses_what_float_cannot_hold) {
 }
 
 TEST(refuses_a_wrong_number_of_frames) {
-    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    const temp_path path = temp_file_path(&own_folder, "cache.pc2");
     io_error error;
     point_cache_writer *writer = open_writer(path.text, VERTICES, 2);
     assert_true(point_cache_writer_write(writer, positions, &error));
@@ -140,14 +140,14 @@ static void check_open_fails(const char *path, uint32_t vertex_count, uint32_t f
 }
 
 TEST(refuses_bad_arguments) {
-    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    const temp_path path = temp_file_path(&own_folder, "cache.pc2");
     check_open_fails(path.text, 0, 1, "1 frames of 0 vertices");
     check_open_fails(path.text, 1, 0, "0 frames of 1 vertices");
     check_open_fails(path.text, (uint32_t)INT32_MAX + 1, 1, "expected 1 to 2147483647");
     check_open_fails(path.text, 1, UINT32_MAX, "expected 1 to 2147483647");
     check_gone(path.text);
-    check_open_fails(temp_file_path(&folder, "none/cache.pc2").text, 1, 1, "cannot create: No such file");
-    const temp_path other = temp_file_write(&folder, "cache.obj", "mine", 4);
+    check_open_fails(temp_file_path(&own_folder, "none/cache.pc2").text, 1, 1, "cannot create: No such file");
+    const temp_path other = temp_file_write(&own_folder, "cache.obj", "mine", 4);
     check_open_fails(other.text, 1, 1, "unknown extension, expected .pc2 or .mdd");
     assert_int_equal(read_bytes(other.text).size, 4);
 }
@@ -168,7 +168,7 @@ TEST(removes_the_file_when_the_disk_is_full) {
     bool failed[3], gone[3];
     io_error errors[3];
     for (size_t i = 0; i < 3; i++) {
-        const temp_path path = temp_file_path(&folder, cases[i].name);
+        const temp_path path = temp_file_path(&own_folder, cases[i].name);
         point_cache_writer *writer = open_writer(path.text, cases[i].vertex_count, 1);
         const bool written = point_cache_writer_write(writer, large, &errors[i]);
         failed[i] = !point_cache_writer_close(writer, written ? &errors[i] : NULL);
@@ -185,7 +185,7 @@ TEST(removes_the_file_when_the_disk_is_full) {
 
 /* Until the last frame is there, and for good when there is an error. */
 TEST(leaves_the_older_file_until_it_is_whole) {
-    const temp_path path = temp_file_write(&folder, "cache.pc2", "older", 5);
+    const temp_path path = temp_file_write(&own_folder, "cache.pc2", "older", 5);
     io_error error;
     point_cache_writer *writer = open_writer(path.text, VERTICES, 2);
     assert_true(point_cache_writer_write(writer, positions, &error));
@@ -201,7 +201,7 @@ TEST(leaves_the_older_file_until_it_is_whole) {
 
 /* A device (here behind a link that has the extension) must not be removed. */
 TEST(leaves_devices_alone) {
-    const temp_path path = temp_file_path(&folder, "device.pc2");
+    const temp_path path = temp_file_path(&own_folder, "device.pc2");
     assert_int_equal(symlink("/dev/null", path.text), 0);
     point_cache_writer *writer = open_writer(path.text, VERTICES, 1);
     assert_false(point_cache_writer_close(writer, NULL));

@@ -1,6 +1,6 @@
 /* Polygons at the limits of what their plane shows: nearly collinear corners, windings, faces that are not flat. */
 #include "tests/support/io/flat_polygon.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tool/io/mesh_builder.h"
 #include "tool/io/polygon.h"

@@ -1,6 +1,6 @@
 /* Lists of jobs: what their lines may say, and which shard has which job. */
-#include "tests/support/own_folder.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/files.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tool/jobs/job_list.h"
 
@@ -107,7 +107,7 @@ TEST(a_line_ends_where_it_ends) {
 /* ---- lists ----------------------------------------------------------------------------------------------- */
 
 static temp_path write_list(const char *text) {
-    return temp_file_write(&folder, "jobs.jsonl", text, strlen(text));
+    return temp_file_write(&own_folder, "jobs.jsonl", text, strlen(text));
 }
 
 TEST(blank_lines_hold_no_job) {

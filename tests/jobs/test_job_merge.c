@@ -1,5 +1,5 @@
 /* A file of results that changes between the two times that it is read. */
-#include "tests/support/own_folder.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tool/jobs/jobs.h"
 
@@ -40,12 +40,12 @@ TEST(a_file_that_changes_while_it_is_read_is_noticed) {
         io_error error = {""};
         uint32_t lines = 0;
         snprintf(text, sizeof text, "%s%s", first, second);
-        const temp_path path = temp_file_write(&folder, "changed.jsonl", text, strlen(text));
+        const temp_path path = temp_file_write(&own_folder, "changed.jsonl", text, strlen(text));
         const char *paths[] = {path.text};
         assert_true(job_merge_read(paths, 1, MERGE_WHOLE, &merge, &error));
         const bool cut = i == sizeof others / sizeof *others;
         snprintf(text, sizeof text, "%s%s", first, cut ? second : others[i]);
-        temp_file_write(&folder, "changed.jsonl", text, strlen(text) - (cut ? CUT : 0));
+        temp_file_write(&own_folder, "changed.jsonl", text, strlen(text) - (cut ? CUT : 0));
         assert_int_equal(job_merge_visit(&merge, count_line, &lines, &error), i == 0);
         assert_int_equal(lines, i == 0 ? 2 : 1);
         assert_true(i == 0 || strstr(error.text, "changed.jsonl: has changed while it was read") != NULL);

@@ -1,5 +1,5 @@
 /* A mesh among many: an interrupt during its search. */
-#include "tests/support/own_folder.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tool/common/terminal.h"
 #include "tool/jobs/jobs.h"
@@ -19,7 +19,7 @@ static bool give_up(void *user, const char *stage, double fraction) {
 /* Thousands of triangles through one place take long enough to be asked whether they should go on. */
 TEST(a_cancelled_search_has_no_answer) {
     enum { FAN = 700 };
-    temp_path path = temp_file_path(&folder, "fan.obj");
+    temp_path path = temp_file_path(&own_folder, "fan.obj");
     FILE *file = fopen(path.text, "w");
     for (int i = 0; i < FAN; i++)
         fprintf(file, "v %d 1 1\nv %d -9 1\nv 0.5 %d -9\nf -3 -2 -1\n", i - FAN / 2, FAN / 2 - i, i);

@@ -1,8 +1,8 @@
 /* Scenes with loose objects beside the rest of the API: threads, instruction sets, starts in contact, floats and views,
  * memory; and triangles to which nothing has changed. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Loose objects while a mesh changes under a detector, and in clones: what is found is what a new detector finds. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Contacts of loose features that are left out: by callback, and by seams. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* What solvers ask about wires, points and half-spaces: proximity, certified steps, line searches, bounds, truncation. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "tests/support/calls.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

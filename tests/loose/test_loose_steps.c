@@ -1,10 +1,10 @@
 /* Contacts of wires, points and half-spaces in a step, against every pair of features by itself. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "tests/support/calls.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Meshes with wires, points and half-spaces: features, hash, bad input, memory. */
 #include "cscd/cscd.h"
 #include "src/mesh/mesh.h"
+#include "tests/support/changing_mesh.h"
 #include "tests/support/rig.h"
-#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Meshes: edges, stars, components and what is wrong with them; bad input; memory. */
 #include "src/mesh/mesh.h"
-#include "tests/support/mesh_shapes.h"
+#include "tests/support/changing_mesh.h"
 #include "tests/support/rig.h"
-#include "tests/support/same_mesh.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -11,20 +11,20 @@ enum { NONE = -1 };
 
 /* ---- every mesh ---- */
 
-static uint32_t shared_by(const shape *s, const uint32_t edge[2], uint32_t triangle) {
+static uint32_t shared_by(const mesh_shape *s, const uint32_t edge[2], uint32_t triangle) {
     uint32_t found = 0;
     for (int i = 0; i < 3; i++)
         found += s->triangles[triangle][i] == edge[0] || s->triangles[triangle][i] == edge[1];
     return found;
 }
 
-static uint32_t has_vertex(const shape *s, uint32_t vertex, uint32_t triangle) {
+static uint32_t has_vertex(const mesh_shape *s, uint32_t vertex, uint32_t triangle) {
     const uint32_t *v = s->triangles[triangle];
     return v[0] == vertex || v[1] == vertex || v[2] == vertex;
 }
 
 /* Edges are sorted and listed once each; a triangle's edge i joins its corners i and i + 1. */
-static void check_edges(const cscd_mesh *mesh, const shape *s) {
+static void check_edges(const cscd_mesh *mesh, const mesh_shape *s) {
     for (uint32_t e = 0; e < cscd_mesh_edge_count(mesh); e++) {
         uint32_t v[2], before[2];
         cscd_mesh_edge(mesh, e, v);
@@ -47,7 +47,7 @@ static void check_edges(const cscd_mesh *mesh, const shape *s) {
 }
 
 /* Lists all triangles that contain the feature, in ascending order. */
-static void check_stars(const cscd_mesh *mesh, const shape *s) {
+static void check_stars(const cscd_mesh *mesh, const mesh_shape *s) {
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         uint32_t count, next = 0;
         const uint32_t *star = cscd_mesh_vertex_triangles(mesh, v, &count);
@@ -67,7 +67,7 @@ static void check_stars(const cscd_mesh *mesh, const shape *s) {
     }
 }
 
-static cscd_status create_mesh(cscd_context *context, const shape *s, cscd_mesh **out) {
+static cscd_status create_mesh(cscd_context *context, const mesh_shape *s, cscd_mesh **out) {
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles[0]);
     return cscd_mesh_create(context, &desc, 1, out);
 }
@@ -110,7 +110,7 @@ static void check_component(const cscd_mesh *mesh, uint32_t index, const expecte
                 (expected->first_bow_tie == NONE ? UINT32_MAX : (uint32_t)expected->first_bow_tie));
 }
 
-static void check_shape(const shape *s, uint32_t component_count, const expected_component *expected) {
+static void check_shape(const mesh_shape *s, uint32_t component_count, const expected_component *expected) {
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = context_of(0, &counter);
     cscd_mesh *mesh = NULL;
@@ -138,16 +138,16 @@ TEST(closed_surfaces) {
     static const expected_component cube = {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component torus = {30, 90, 60, 0, 0, 0, 0, 0, NO_EDGES, NONE};
     static const expected_component cones = {102, 300, 200, 0, 0, 0, 0, 2, NO_EDGES, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     check_shape(&s, 1, &tetrahedron);
-    s = (shape){0};
+    s = (mesh_shape){0};
     shape_add_cube(&s);
     check_shape(&s, 1, &cube);
-    s = (shape){0};
+    s = (mesh_shape){0};
     shape_add_grid(&s, 5, 6, true, true);
     check_shape(&s, 1, &torus);
-    s = (shape){0};
+    s = (mesh_shape){0};
     for (uint32_t i = 0; i < 100; i++) { /* two cones over one rim, jumping around it; tips 0 and 101 */
         uint32_t a = 37 * i % 100, b = (a + 1) % 100;
         shape_add_triangle(&s, 0, 1 + a, 1 + b);
@@ -158,7 +158,7 @@ TEST(closed_surfaces) {
 
 TEST(isolated_vertices) {
     static const expected_component tetrahedron = {4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_tetrahedron(&s, 1, 2, 4, 5);
     s.vertex_count = 8;
     check_shape(&s, 1, &tetrahedron);
@@ -167,7 +167,7 @@ TEST(isolated_vertices) {
 TEST(two_components) {
     static const expected_component expected[2] = {{4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE},
                                                    {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE}};
-    shape cube = {0}, s = {0};
+    mesh_shape cube = {0}, s = {0};
     shape_add_cube(&cube);
     shape_add_tetrahedron(&s, 9, 11, 8, 10); /* numbered by the first triangle, not by vertices */
     for (uint32_t t = 0; t < cube.triangle_count; t++)
@@ -195,20 +195,20 @@ TEST(open_surfaces) {
                                              1,  {0, 1}, {NONE, NONE}, {NONE, NONE}, NONE};
     static const expected_component cylinder = {24, 60,     36,           12,           0,   0, 0,
                                                 0,  {0, 1}, {NONE, NONE}, {NONE, NONE}, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_triangle(&s, 0, 1, 2);
     check_shape(&s, 1, &triangle);
-    s = (shape){0};
+    s = (mesh_shape){0};
     shape_add_grid(&s, 3, 4, false, false);
     check_shape(&s, 1, &sheet);
-    s = (shape){0};
+    s = (mesh_shape){0};
     shape_add_grid(&s, 3, 6, false, true);
     check_shape(&s, 1, &cylinder);
 }
 
 TEST(moebius_strip) {
     static const expected_component strip = {12, 24, 12, 12, 0, 0, 1, 0, {0, 2}, {NONE, NONE}, {0, 1}, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_moebius_strip(&s, 6);
     check_shape(&s, 1, &strip);
 }
@@ -217,11 +217,11 @@ TEST(bow_ties) {
     static const expected_component tetrahedra = {7, 12, 8, 0, 0, 1, 0, 3, NO_EDGES, 3};
     static const expected_component triangles = {5, 6, 2, 6, 0, 1, 0, 1, {0, 1}, {NONE, NONE}, {NONE, NONE},
                                                  2};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     shape_add_tetrahedron(&s, 4, 3, 6, 5);
     check_shape(&s, 1, &tetrahedra);
-    s = (shape){0};
+    s = (mesh_shape){0};
     shape_add_triangle(&s, 0, 1, 2);
     shape_add_triangle(&s, 2, 3, 4);
     check_shape(&s, 1, &triangles);
@@ -229,7 +229,7 @@ TEST(bow_ties) {
 
 TEST(three_on_an_edge) {
     static const expected_component fins = {5, 7, 3, 6, 1, 0, 0, 1, {0, 2}, {0, 1}, {NONE, NONE}, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_triangle(&s, 0, 1, 2);
     shape_add_triangle(&s, 1, 0, 3);
     shape_add_triangle(&s, 0, 1, 4);
@@ -239,7 +239,7 @@ TEST(three_on_an_edge) {
 TEST(flipped_triangle) {
     static const expected_component flipped = {8, 18,           12,           0,      0,   0, 3,
                                                2, {NONE, NONE}, {NONE, NONE}, {0, 1}, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_cube(&s);
     uint32_t *v = s.triangles[1], second = v[1]; /* 0 3 1 */
     v[1] = v[2];
@@ -252,7 +252,7 @@ TEST(doubled_triangle) {
     static const expected_component pillow = {3, 3, 2, 0, 0, 0, 0, 2, NO_EDGES, NONE};
     static const expected_component doubled = {3,      3,   2, 0, 0, 0, 3, 2, {NONE, NONE}, {NONE, NONE},
                                                {0, 1}, NONE};
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_triangle(&s, 0, 1, 2);
     shape_add_triangle(&s, 2, 1, 0);
     check_shape(&s, 1, &pillow);

@@ -1,6 +1,6 @@
 /* Meshes that are made from others: bit for bit what would be made anew, with maps that say what became of what. */
+#include "tests/support/changing_mesh.h"
 #include "tests/support/rig.h"
-#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Changes of meshes: orders of destruction, readers in other threads. */
+#include "tests/support/changing_mesh.h"
 #include "tests/support/rig.h"
-#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <pthread.h>

@@ -1,7 +1,7 @@
 /* The signs of moved points against polynomials that are written out, on grids so small that everything degenerates. */
 #include "src/mesh/predicates.h"
 #include "tests/support/intersections/epsilon_polynomial.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <stdbool.h>

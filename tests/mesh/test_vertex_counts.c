@@ -1,6 +1,6 @@
 /* Vertices without a triangle cost one number each, and a count that can only be a mistake costs nothing. */
 #include "cscd/cscd.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <string.h>

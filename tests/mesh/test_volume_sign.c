@@ -3,8 +3,8 @@
 #include "src/core/context.h"
 #include "src/mesh/surface.h"
 #include "tests/support/ccd/exact_integer.h"
-#include "tests/support/mesh_shapes.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -22,7 +22,7 @@ typedef struct volume_rig {
 
 /* A cube, or a tetrahedron. */
 static void make_rig(volume_rig *r, bool cube) {
-    shape s = {0};
+    mesh_shape s = {0};
     if (cube)
         shape_add_cube(&s);
     else

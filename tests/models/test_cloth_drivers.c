@@ -1,6 +1,6 @@
 /* Cloth driven by displacement bounds and by planes: each round is a straight motion without contact. */
 #include "models/cloth/cloth.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <math.h>

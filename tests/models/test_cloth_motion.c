@@ -2,8 +2,8 @@
  * without need. */
 #include "models/cloth/cloth.h"
 #include "models/cloth/cloth_scene.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "models/cloth/cloth.h"
 #include "models/cloth/cloth_scene.h"
 #include "models/common/vec3.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

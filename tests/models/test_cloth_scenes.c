@@ -2,7 +2,7 @@
 #include "cscd/research.h"
 #include "models/cloth/cloth.h"
 #include "models/common/vec3.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "models/common/vec3.h"
 #include "models/ipc/newton_system.h"
 #include "models/shapes/catalogue.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "cscd/research.h"
 #include "models/common/vec3.h"
 #include "models/ipc/ipc.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

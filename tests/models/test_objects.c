@@ -3,11 +3,11 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "src/mesh/positions.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <stdlib.h>
 #include <string.h>

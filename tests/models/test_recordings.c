@@ -1,6 +1,6 @@
 /* The recordings begin embedded, are repeatable bit for bit, gain no energy, and fit into their files. */
 #include "models/softbody/softbody.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <math.h>

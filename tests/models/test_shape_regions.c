@@ -1,7 +1,7 @@
 /* The regions of the three bodies are as expected with the default procedure. The number of regions hardly
  * depends on that of the triangles, so a few small counts suffice. */
 #include "cscd/cscd.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,8 @@
 /* The bodies of models/shapes have exact counts, are closed, oriented and embedded, have triangles of
  * similar size, and have the intended shape. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
  * down onto it. */
 #include "models/common/vec3.h"
 #include "models/softbody/softbody.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Pairs to leave out: a list does what the callback does, and seams make a split surface whole again. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -3,11 +3,11 @@
 #include "cscd/research.h"
 #include "runtime/ccd/ccd.h"
 #include "runtime/ccd/elementary_levels.h"
+#include "tests/support/calls.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/levels.h"
-#include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Orphan pairs are those of their definition, on small surfaces whose vertices have few triangles, with boundaries and with edges of
  * more than two triangles. */
 #include "runtime/narrow_phase/narrow_phase.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Orphan pairs of meshes that were made from others: those that a search of the whole mesh finds. */
 #include "runtime/narrow_phase/narrow_phase.h"
+#include "tests/support/changing_mesh.h"
 #include "tests/support/rig.h"
-#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

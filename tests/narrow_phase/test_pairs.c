@@ -1,9 +1,9 @@
 /* Single pairs: every bit is that of a detector on a mesh with just these features. */
 #include "cscd/cscd.h"
+#include "tests/support/calls.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/levels.h"
-#include "tests/support/packed.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * pair of features that share none; or the pair of features is an orphan pair. */
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

@@ -3,10 +3,10 @@
 #include "cscd/cscd.h"
 #include "runtime/ccd/exact.h"
 #include "runtime/narrow_phase/feature_queue.h"
+#include "tests/support/calls.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"
-#include "tests/support/collapsed_oracle.h"
-#include "tests/support/packed.h"
+#include "tests/support/oracle.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 

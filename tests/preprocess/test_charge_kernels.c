@@ -1,9 +1,9 @@
 /* A plan whose charge was solved for by a dense matrix says with which kernels OpenBLAS has done that. The program runs itself again behind a library that plays an OpenBLAS that
  * does not know the processor. */
 #include "preprocess/baselines/dense/blas_choice.h"
+#include "tests/support/calls.h"
+#include "tests/support/files.h"
 #include "tests/support/models/body_of.h"
-#include "tests/support/packed.h"
-#include "tests/support/temp_file.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Charges by the treecode against those of the dense system, and what may go wrong on the way. */
 #include "benchmarks/lib/density_ranks.h"
 #include "preprocess/treecode/treecode.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/preprocess/treecode_rig.h"
 #include "tests/support/test.h"

@@ -1,6 +1,6 @@
 /* The dense solution by panels: matrices of one to three panels whose solutions are known, zero pivots, and cancelling. */
 #include "preprocess/baselines/dense/dense.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Equalized densities are ranks, by component. */
 #include "preprocess/regions/regions.h"
-#include "tests/support/mesh_shapes.h"
+#include "tests/support/calls.h"
 #include "tests/support/random.h"
-#include "tests/support/refusal.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ static int close_context(void **state) {
     return leaked ? -1 : 0;
 }
 
-static cscd_mesh *mesh_of(const shape *s) {
+static cscd_mesh *mesh_of(const mesh_shape *s) {
     cscd_mesh *mesh = NULL;
     cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles[0]);
     expect_ok(cscd_mesh_create(context, &desc, 1, &mesh));
@@ -34,7 +34,7 @@ static cscd_mesh *mesh_of(const shape *s) {
 
 /* Triangle i is joined to i - 1 and i + 1. */
 static cscd_mesh *strip_mesh(uint32_t triangle_count) {
-    shape s = {0};
+    mesh_shape s = {0};
     for (uint32_t i = 0; i < triangle_count; i++)
         shape_add_triangle(&s, i, i % 2 == 0 ? i + 1 : i + 2, i % 2 == 0 ? i + 2 : i + 1);
     return mesh_of(&s);
@@ -86,7 +86,7 @@ TEST(rounded_to_24_bits) {
 
 /* An inner component with hardly any charge is not all low, nor does it change the outer one's ranks. */
 TEST(each_component_on_its_own) {
-    shape s = {0};
+    mesh_shape s = {0};
     shape_add_tetrahedron(&s, 0, 1, 2, 3);
     shape_add_tetrahedron(&s, 4, 5, 6, 7);
     cscd_mesh *mesh = mesh_of(&s);

@@ -1,9 +1,9 @@
 /* Expansions of 1 / r against sums over the charges, and the bound of their error. */
 #include "preprocess/treecode/expansion.h"
 #include "preprocess/treecode/source_tree.h"
-#include "tests/support/levels.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,9 +2,8 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "src/mesh/plan.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Plans by method auto of several objects, for a motion and soft places: every allocation fails once, every report of progress cancels
  * once, and sizes near the limits of coordinates change nothing. */
 #include "src/core/context.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,5 @@
 /* Charges of fans, combs and other shapes of long triangles: those of the dense system, in memory that grows with the triangles. */
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/preprocess/treecode_rig.h"
 #include "tests/support/test.h"

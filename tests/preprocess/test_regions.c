@@ -2,10 +2,10 @@
 #include "preprocess/preprocess.h"
 #include "preprocess/regions/regions.h"
 #include "src/mesh/surface.h"
+#include "tests/support/calls.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/preprocess/visible_share.h"
 #include "tests/support/random.h"
-#include "tests/support/refusal.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,8 +1,7 @@
 /* A report, and what it keeps of answers, events and long summaries, survives every failed allocation: it says so, nothing leaks, and
  * nothing of the tries that failed is in the page of the one that did not. */
-#include "tests/support/io_allocations.h"
-#include "tests/support/own_folder.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
+#include "tests/support/files.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tool/report/page.h"
@@ -118,8 +117,8 @@ static void expect_same_files(const char *a, const char *b) {
 }
 
 TEST(memory_that_runs_out_leaves_nothing) {
-    const temp_path path = temp_file_path(&folder, "page.html"),
-                    whole = temp_file_path(&folder, "whole.html");
+    const temp_path path = temp_file_path(&own_folder, "page.html"),
+                    whole = temp_file_path(&own_folder, "whole.html");
     struct stat status;
     char *summary = make_summary();
     io_error error = {""};

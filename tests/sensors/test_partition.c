@@ -1,7 +1,6 @@
 /* Partitions: parts, how many cells each gets, and cells that are connected and hold every vertex once. */
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/random.h"
-#include "tests/support/refusal.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sensors/partition_check.h"
 #include "tests/support/sensors/sensor_rig.h"

@@ -1,5 +1,5 @@
 /* The cases of the thesis's proofs: two and more, convex and concave, of equal and unequal size. */
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,7 @@
 /* What sensors have in common with every object: they hold what they were made from, are refused within a call of their context,
  * fit a small stack, take triangles alone, and are checked for planted faults. */
 #include "sensors/sensors.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/panels.h"
 #include "tests/support/rig.h"
 #include "tests/support/sensors/sensor_rig.h"

@@ -1,7 +1,7 @@
 /* Checks the default mu: two parts that touch have two vertices nearer than mu at the start or at the end,
  * and no smaller bound would do. Also checks how far around them particles look. */
 #include "sensors/sensors.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* Compares the contacts that sensors find with those of the detector, on random scenes. Every contact that
  * sensors report must be one. They do not promise to report all; the test prints the share that they reach,
  * and asserts a smaller one. */
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 

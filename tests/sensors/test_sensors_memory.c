@@ -1,6 +1,6 @@
 /* Sensors and memory: every allocation fails once, nothing leaks, steady steps allocate nothing; and work
  * grows with the scene, not with its square. */
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 

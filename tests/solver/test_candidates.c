@@ -1,7 +1,7 @@
 /* The candidates of a motion contain every contact of it and of every shorter motion. */
 #include "runtime/detector/detector.h"
 #include "runtime/solver/free_step.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -1,12 +1,12 @@
 /* Displacement bounds: motions into the corners of what they allow keep all pairs apart, by rational numbers. */
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/panels.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
 #include "tests/support/solver/truncation_trial.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,8 @@
 /* A solver that stores floats marches on: what it stores is what was certified, and it goes as far as in doubles. */
 #include "runtime/detector/detector.h"
 #include "runtime/solver/solver.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 #include <float.h>

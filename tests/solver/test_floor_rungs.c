@@ -1,7 +1,7 @@
 /* No pair leaves the rung on which it starts: not one that is just above its distance when kernels part it, and not one
  * below it that is pressed until doubles end. */
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

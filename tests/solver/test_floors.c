@@ -1,7 +1,7 @@
 /* Starts nearer than min_separation: pressed together they lose no more than a rung, torn apart they go on. */
 #include "runtime/solver/solver.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

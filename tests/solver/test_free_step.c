@@ -1,6 +1,6 @@
 /* The search for a free step, which shortens steps until one is free, on motions that the test makes up. */
 #include "runtime/solver/free_step.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -1,12 +1,11 @@
 /* Steps that are certified free of contact, by brute force and by marches of many steps. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
-#include "tests/support/sequences.h"
+#include "tests/support/calls.h"
+#include "tests/support/scenes.h"
 #include "tests/support/solver/free_step_check.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

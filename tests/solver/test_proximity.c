@@ -2,13 +2,12 @@
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "runtime/solver/solver.h"
+#include "tests/support/calls.h"
 #include "tests/support/ccd/feature_distance.h"
-#include "tests/support/methods.h"
 #include "tests/support/oracle.h"
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,13 +1,13 @@
 /* Truncated motions: what was apart stays apart on the way, by the exact tests of a step and by rational numbers. */
 #include "runtime/solver/near_pairs.h"
 #include "runtime/solver/solver.h"
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
 #include "tests/support/solver/truncation_trial.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* Calls of cscd_detector_truncate: what they refuse, what the detector knows afterwards, and the same for everyone. */
-#include "tests/support/packed.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
 #include "tests/support/solver/truncation_trial.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,7 @@
 /* Proximities without repetitions: merged as brute force over the list of pairs merges them, with the same energy. */
 #include "cscd/cscd.h"
-#include "tests/support/packed.h"
-#include "tests/support/random_stream.h"
-#include "tests/support/refusal.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/solver/near_items.h"
 #include "tests/support/test.h"
 

@@ -1,6 +1,6 @@
 /* Pairs that wait because they are nearer than their distance, but do not touch, keep floors: no certified motion takes
  * them through each other. */
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/panels.h"
 #include "tests/support/test.h"
 

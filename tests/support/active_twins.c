@@ -3,7 +3,7 @@
 #include "tests/support/active_twins.h"
 
 #include "cscd/research.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <math.h>

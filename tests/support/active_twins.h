@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
 enum { TWIN_VERTICES_MAX = 2 * SCENE_VERTICES_MAX };

@@ -1,8 +1,10 @@
-/* Scenes of several objects that tear, are refined, lose triangles, are renumbered, come and go. */
+/* Scenes of several objects that tear, are refined, lose triangles, are renumbered, come and go; and their meshes. */
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/random_stream.h"
+#include "src/mesh/mesh.h"
+#include "tests/support/calls.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
 enum { CHANGING_OBJECTS_MAX = 6, CHANGING_VERTICES_MAX = 320, CHANGING_TRIANGLES_MAX = 600 };
@@ -42,3 +44,9 @@ void changing_scene_describe(const changing_scene *s, cscd_object_desc *descs);
 
 /* All objects joined: the triangles, and the positions as x0 and x1. */
 void changing_scene_join(const changing_scene *s, scene *out);
+
+/* ---- their meshes -------------------------------------------------------------------------------------- */
+
+cscd_mesh *changing_scene_mesh(cscd_context *context, const changing_scene *s);
+
+void check_same_mesh(const cscd_mesh *a, const cscd_mesh *b);

@@ -1,5 +1,5 @@
 /* io_realloc of the tests, which fails once when its time has come. */
-#include "tests/support/io_allocations.h"
+#include "tests/support/files.h"
 
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
-/* Brute force over features, which every method must equal. */
+/* Brute force over features, which every method must equal; which components are collapsed, and when they first touch themselves. */
 #include "tests/support/oracle.h"
 
+#include "src/mesh/predicates.h"
 #include "tests/support/ccd/queue_test.h"
-#include "tests/support/collapsed_oracle.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -231,4 +231,79 @@ void oracle_expect(const oracle_list *truth, const cscd_contacts *found) {
 void oracle_free(oracle_list *list) {
     free(list->items);
     *list = (oracle_list){0};
+}
+
+/* ---- collapsed components ------------------------------------------------------------------------------ */
+
+/* Gives all corners of each triangle the least label of one. */
+static void label_components(const scene *s, uint32_t *labels) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) labels[v] = v;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            const uint32_t *c = s->triangles + (size_t)t * 3;
+            uint32_t least = labels[c[0]];
+            for (int i = 1; i < 3; i++) least = labels[c[i]] < least ? labels[c[i]] : least;
+            for (int i = 0; i < 3; i++) {
+                changed |= labels[c[i]] != least;
+                labels[c[i]] = least;
+            }
+        }
+    }
+}
+
+void collapsed_oracle(const scene *s, const double *positions, const uint32_t *names, bool *vertices) {
+    static uint32_t labels[SCENE_VERTICES_MAX];
+    static bool has_area[SCENE_VERTICES_MAX], has_surface[SCENE_VERTICES_MAX];
+    memset(has_area, false, sizeof has_area);
+    memset(has_surface, false, sizeof has_surface);
+    label_components(s, labels);
+    for (uint32_t t = 0; t < s->triangle_count; t++) {
+        const uint32_t *c = s->triangles + (size_t)t * 3;
+        uint32_t label = labels[c[0]];
+        has_area[label] |= !collinear(positions + (size_t)c[0] * 3, positions + (size_t)c[1] * 3,
+                                      positions + (size_t)c[2] * 3);
+        has_surface[label] |= names == NULL || (names[c[0]] != names[c[1]] && names[c[1]] != names[c[2]] &&
+                                                names[c[2]] != names[c[0]]);
+    }
+    for (uint32_t v = 0; v < s->vertex_count; v++)
+        vertices[v] = has_surface[labels[v]] && !has_area[labels[v]];
+}
+
+void collapsed_oracle_at_ends(const scene *s, const uint32_t *names, bool *vertices) {
+    static bool at_end[SCENE_VERTICES_MAX];
+    collapsed_oracle(s, s->x0, names, vertices);
+    collapsed_oracle(s, s->x1, names, at_end);
+    for (uint32_t v = 0; v < s->vertex_count; v++) vertices[v] |= at_end[v];
+}
+
+/* ---- first contacts ------------------------------------------------------------------------------------ */
+
+/* A feature belongs to the component of any triangle that holds it. */
+static uint32_t component_of(const cscd_mesh *mesh, const scene *s, cscd_contact_kind kind, uint32_t feature,
+                             bool second) {
+    uint32_t vertices[2] = {feature, 0};
+    if (kind == CSCD_CONTACT_VF && second) return cscd_mesh_triangle_component(mesh, feature);
+    if (kind == CSCD_CONTACT_EE) cscd_mesh_edge(mesh, feature, vertices);
+    for (uint32_t t = 0; t < s->triangle_count; t++) {
+        for (int i = 0; i < 3; i++) {
+            if (s->triangles[t * 3 + (uint32_t)i] == vertices[0])
+                return cscd_mesh_triangle_component(mesh, t);
+        }
+    }
+    return UINT32_MAX;
+}
+
+uint32_t self_component(const cscd_mesh *mesh, const scene *s, const cscd_contact *c) {
+    uint32_t a = component_of(mesh, s, c->kind, c->a, false), b = component_of(mesh, s, c->kind, c->b, true);
+    return a == b ? a : UINT32_MAX;
+}
+
+void find_first_times(const cscd_mesh *mesh, const scene *s, const cscd_contacts *list,
+                      double times[COMPONENTS_MAX]) {
+    for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) times[c] = INFINITY;
+    for (size_t i = 0; i < list->count; i++) {
+        uint32_t c = self_component(mesh, s, &list->items[i]);
+        if (c != UINT32_MAX) times[c] = fmin(times[c], list->items[i].toi);
+    }
 }

@@ -1,4 +1,4 @@
-/* Brute force over features, which every method must equal. */
+/* Brute force over features, which every method must equal; which components are collapsed, and when they first touch themselves. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -40,3 +40,28 @@ void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list
 void oracle_expect(const oracle_list *truth, const cscd_contacts *found);
 
 void oracle_free(oracle_list *list);
+
+/* ---- collapsed components ------------------------------------------------------------------------------ */
+
+/* Marks, per vertex of the scene, those of components whose triangles all have no area at the positions; false for vertices
+ * without a triangle. names: per vertex, for wires; NULL: there are none. */
+void collapsed_oracle(const scene *s, const double *positions, const uint32_t *names, bool *vertices);
+
+/* The same of both ends of the scene's interval together. */
+void collapsed_oracle_at_ends(const scene *s, const uint32_t *names, bool *vertices);
+
+/* ---- first contacts ------------------------------------------------------------------------------------ */
+
+/* A scene has at most this many components. */
+enum { COMPONENTS_MAX = SCENE_TRIANGLES_MAX };
+
+/* A time of impact may be early by less than this. */
+#define TOI_EARLY 1e-9
+
+/* Returns the component whose contact with itself this is, or UINT32_MAX for a contact between two
+ * components. */
+uint32_t self_component(const cscd_mesh *mesh, const scene *s, const cscd_contact *c);
+
+/* Fills in the time of each component's first contact with itself in a list; INFINITY means none. */
+void find_first_times(const cscd_mesh *mesh, const scene *s, const cscd_contacts *list,
+                      double times[COMPONENTS_MAX]);

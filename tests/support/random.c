@@ -1,7 +1,5 @@
-/* One random stream for a whole test program; random_seed starts it again. */
+/* Reproducible random numbers: streams, and one stream for a whole test program, which random_seed starts again. */
 #include "tests/support/random.h"
-
-#include "tests/support/random_stream.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* A context, a mesh, perhaps a plan, and a detector; any failure fails the test. */
 #include "tests/support/rig.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 cscd_context *context_of(uint32_t thread_count, counting_allocator *counter) {

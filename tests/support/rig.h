@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/calls.h"
 #include "tests/support/scenes.h"
 
 typedef struct rig {

@@ -1,6 +1,4 @@
 /* The main of a room of tests. */
-#include "tests/support/room.h"
-
 #include "tests/support/test.h"
 
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* Runs every call of the API that may take long, one after the other, and computes a digest of each
  * result. */
 #include "tests/support/workload.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 
 #include "src/core/names.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/sequences.h"
+#include "tests/support/scenes.h"
 
 /* Makes a closed tube whose upper part comes down on the lower one after some frames. */
 void workload_tube(sequence *out, int rings, int segments, uint32_t frame_count);

@@ -10,7 +10,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 
 /* A triangle seen from azimuth 0 and elevation 0: x points to the right, z up, y away from the eye. */
 static const double facing_positions[] = {-1, 0, -1, 1, 0, -1, 0, 0, 1};

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 static picture_image filled_image(uint32_t width, uint32_t height, uint8_t value) {
     picture_image image;

@@ -1,5 +1,5 @@
 /* The paths that the functions of Windows get. Wine takes those of any length, and Windows 260 characters where the prefix is missing. */
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tool/windows/wide.h"
 

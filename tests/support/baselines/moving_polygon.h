@@ -1,7 +1,7 @@
 /* Polygons that move in a plane across any axis, and a reference in long double that looks whether they stay simple. */
 #pragma once
 
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* Pairs of triangles that touch along one of the seven directions of 14-DOPs, to the last bit of a double. */
 #pragma once
 
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
 /* Makes pairs of triangles 2 i and 2 i + 1 with vertices of their own. At both ends the least of one is

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/support/ccd/elementary_cases.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 typedef enum query_family {
     FAMILY_TINY_GRID,      /* coordinates -1, 0, 1 */

@@ -2,7 +2,7 @@
 #include "tests/support/intersections/crossing_scene.h"
 
 #include "runtime/intersections/static_check.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <math.h>

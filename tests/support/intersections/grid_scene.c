@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-static void add_octahedron(shape *s) {
+static void add_octahedron(mesh_shape *s) {
     for (uint32_t i = 0; i < 4; i++) {
         shape_add_triangle(s, i, (i + 1) % 4, 4);
         shape_add_triangle(s, (i + 1) % 4, i, 5);
@@ -15,7 +15,7 @@ static void add_octahedron(shape *s) {
 }
 
 /* Four rings of four; the last one is joined to the first one in reverse order. */
-static void add_klein_bottle(shape *s) {
+static void add_klein_bottle(mesh_shape *s) {
     for (uint32_t i = 0; i < 4; i++) {
         for (uint32_t j = 0; j < 4; j++) {
             uint32_t next = (j + 1) % 4, above = (i + 1) * 4;
@@ -27,7 +27,7 @@ static void add_klein_bottle(shape *s) {
     }
 }
 
-static void add_soup(random_stream *random, shape *s) {
+static void add_soup(random_stream *random, mesh_shape *s) {
     for (int i = 0; i < 8; i++) {
         uint32_t a = stream_below(random, 9), b = (a + 1 + stream_below(random, 8)) % 9, c;
         do c = stream_below(random, 9);
@@ -37,7 +37,7 @@ static void add_soup(random_stream *random, shape *s) {
 }
 
 static void make_shapes(grid_family family, random_stream *random, grid_scene *s) {
-    shape *first = &s->shapes[0], *second = &s->shapes[1];
+    mesh_shape *first = &s->shapes[0], *second = &s->shapes[1];
     switch (family) {
     case GRID_TWO_BOXES:
         shape_add_cube(first);
@@ -115,7 +115,7 @@ void grid_scene_make(grid_family family, uint64_t seed, grid_scene *out) {
     make_shapes(family, &random, out);
     out->object_count = out->shapes[1].triangle_count > 0 ? 2 : 1;
     for (uint32_t i = 0; i < out->object_count; i++) {
-        const shape *of = &out->shapes[i];
+        const mesh_shape *of = &out->shapes[i];
         descs[i] = cscd_object_of_triangles(of->vertex_count, of->triangle_count, of->triangles[0]);
         out->vertex_count += of->vertex_count;
     }

@@ -4,8 +4,8 @@
 #include "cscd/surface.h"
 #include "runtime/intersections/named_surface.h"
 #include "tests/support/intersections/epsilon_polynomial.h"
-#include "tests/support/mesh_shapes.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
 
 /* What meshes a scene has. Those before the sheet are closed manifolds with an orientation. */
 typedef enum grid_family {
@@ -26,7 +26,7 @@ typedef enum grid_family {
 enum { GRID_OBJECTS = 2 };
 
 typedef struct grid_scene {
-    shape shapes[GRID_OBJECTS];
+    mesh_shape shapes[GRID_OBJECTS];
     uint32_t object_count, vertex_count;
     double positions[EPSILON_NAMES * 3];
     uint32_t names[EPSILON_NAMES];

@@ -1,9 +1,9 @@
 /* Random meshes on small integers, and all their pairs by the oracle. */
 #include "tests/support/intersections/integer_scene.h"
 
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <string.h>

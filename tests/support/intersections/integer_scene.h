@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tests/support/intersections/kind_oracle.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 enum {
     SCENE_PARTS = 3,

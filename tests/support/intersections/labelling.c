@@ -1,7 +1,7 @@
 /* Labels of triangles, and sums by pair of parts that look at every list anew for every pair of parts. */
 #include "tests/support/intersections/labelling.h"
 
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* Bodies of which nearly all triangles cross each other. */
 #include "tests/support/intersections/tangles.h"
 
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 /* Puts the vertices of a body in another order, as a file does that was exported from another mesh. */
 static void shuffle_vertices(scene *s, uint32_t first, uint32_t count, uint64_t seed) {

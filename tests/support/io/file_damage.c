@@ -1,7 +1,6 @@
 /* Mesh files with random damage, read as meshes and as animations. */
 #include "tests/support/io/file_damage.h"
-#include "tests/support/io/byte_damage.h"
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tests/support/test.h"
 #include "tool/io/animation.h"
 

@@ -1,7 +1,7 @@
 /* Polygons with whole coordinates, and an oracle of how they are filled: area, orientation, edges and winding. */
 #pragma once
 
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 #include <stdbool.h>
 #include <stdint.h>

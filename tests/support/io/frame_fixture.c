@@ -6,20 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-temp_folder frame_fixture_folder;
-
-int frame_fixture_make_folder(void **state) {
-    (void)state;
-    frame_fixture_folder = temp_folder_make();
-    return 0;
-}
-
-int frame_fixture_remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&frame_fixture_folder);
-    return 0;
-}
-
 void frame_fixture_put_int(frame_fixture_bytes *bytes, size_t offset, int32_t value, bool big_endian) {
     assert_true(offset <= bytes->size && offset + 4 <= sizeof bytes->data);
     const uint32_t bits = (uint32_t)value;

@@ -1,18 +1,13 @@
 /* Recorded animations for tests: point caches built byte by byte, mesh files, and checks of what is read. */
 #pragma once
 
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 #include "tool/io/animation.h"
 #include "tool/io/io.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-/* The folder of a test's files. The two functions are the set-up and tear-down of the cmocka group. */
-extern temp_folder frame_fixture_folder;
-int frame_fixture_make_folder(void **state);
-int frame_fixture_remove_folder(void **state);
 
 /* A small file in memory. */
 typedef struct frame_fixture_bytes {

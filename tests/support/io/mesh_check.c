@@ -2,8 +2,7 @@
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
 
-#include "tests/support/io_allocations.h"
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/random.h"
 
 enum { LOOSE_OBJECTS_MAX = 8, LOOSE_VERTICES_MAX = 256, LOOSE_LIST_MAX = 60000 };
 

@@ -2,8 +2,8 @@
 #include "tests/support/proofs/openings.h"
 
 #include "cscd/research.h"
-#include "tests/support/methods.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 #include "tests/support/workload.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* A context, a mesh, a plan and sensors for a scene; any failure to make them fails the test. */
 #include "tests/support/sensors/sensor_rig.h"
 #include "sensors/sensors.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <assert.h>

@@ -3,7 +3,7 @@
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Lists of proximities in both forms, and their energies. */
 #include "tests/support/solver/near_items.h"
 
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <math.h>

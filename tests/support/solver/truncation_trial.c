@@ -1,9 +1,9 @@
 /* What the tests of truncation share: a detector with a separation, two triangles, and a call in either scalar. */
 #include "tests/support/solver/truncation_trial.h"
 
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <string.h>
 

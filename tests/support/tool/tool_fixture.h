@@ -1,7 +1,7 @@
 /* Recordings that the tests of the tool replay: meshes with frames, and the files that hold them. */
 #pragma once
 
-#include "tests/support/temp_file.h"
+#include "tests/support/files.h"
 
 #include <stdbool.h>
 #include <stdint.h>

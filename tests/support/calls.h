@@ -1,10 +1,13 @@
-/* The functions of the API for tests, whose positions are packed doubles, one array for all objects, and whose
- * objects are all of the mesh's context. NULL goes on as NULL. */
+/* Calls of the API for tests: with packed positions, with refusals that say why, and with an allocator that counts. */
 #pragma once
 
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "tests/support/test.h"
 
+#include <string.h>
+
+/* Positions are packed doubles, one array for all objects, and objects are all of the mesh's context. NULL goes on as NULL. */
 cscd_status plan_create_packed(const cscd_mesh *mesh, const double *positions,
                                const cscd_plan_options *options, cscd_plan **out);
 cscd_status plan_from_parts_packed(const cscd_mesh *mesh, const double *positions,
@@ -40,3 +43,25 @@ cscd_status pairs_step_packed(cscd_context *context, const cscd_pairs *pairs, co
                               cscd_pair_contact *out);
 cscd_status pairs_near_packed(cscd_context *context, const cscd_pairs *pairs, const double *positions,
                               double distance, cscd_pair_distance *out);
+
+/* ---- refusals ------------------------------------------------------------------------------------------ */
+
+/* The call in this context was refused as INVALID_ARGUMENT, and its sentence has these words. */
+static inline void expect_invalid(const cscd_context *context, cscd_status status, const char *words) {
+    const char *detail = cscd_context_detail(context);
+    assert_int_equal(status, CSCD_INVALID_ARGUMENT);
+    if (strstr(detail, words) == NULL) fail_msg("\"%s\" does not say \"%s\"", detail, words);
+}
+
+/* ---- an allocator -------------------------------------------------------------------------------------- */
+
+/* It counts its calls, can be told to fail, and ends the program where a caller has written behind a block. */
+typedef struct counting_allocator {
+    size_t calls;       /* calls of allocate */
+    size_t fail_at;     /* the number of the call that fails; SIZE_MAX: none */
+    size_t live, bytes; /* blocks and bytes not yet released */
+    size_t peak;        /* the most bytes at one time */
+} counting_allocator;
+
+counting_allocator counting_allocator_start(void);
+cscd_allocator counting_allocator_interface(counting_allocator *counter);

@@ -1,6 +1,5 @@
-/* Exact winding numbers beside the triangles that a detector calls clean: a line along an axis through the triangle, and
- * all triangles of its component that this line passes through beyond it. */
-#include "tests/support/culling/exact_numbers.h"
+/* What a detector knows of the start of its next step, and exact winding numbers beside the triangles that it calls clean. */
+#include "tests/support/culling/clean_triangles.h"
 
 #include "src/mesh/predicates.h"
 #include "tests/support/test.h"

@@ -1,8 +1,8 @@
-/* The methods that this build has: without runtime/baselines there are no CONES, ICCD, ICCD_PUBLISHED and PUBLISHED. */
-#include "tests/support/methods.h"
-#include "tests/support/packed.h"
+/* The variants that tests go through: the methods of this build, and the instruction sets of this processor. */
+#include "tests/support/variants.h"
 
 #include "cscd/research.h"
+#include "tests/support/calls.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -54,4 +54,28 @@ cscd_method method_or_none(cscd_method method) {
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     return present ? method : CSCD_METHOD_NONE;
+}
+
+/* ---- instruction sets ---------------------------------------------------------------------------------- */
+
+cscd_context *contexts[LEVEL_COUNT];
+
+int open_levels(void **state) {
+    (void)state;
+    for (int i = 0; i < LEVEL_COUNT; i++) {
+        cscd_context_options options = cscd_context_defaults();
+        options.simd = (cscd_simd)(CSCD_SIMD_SCALAR + i);
+        bool created = cscd_context_create(&options, &contexts[i]) == CSCD_OK;
+        if (created != processor_has_simd(options.simd)) return 1;
+        if (!created) contexts[i] = NULL;
+        print_message("%s: %s\n", cscd_name(CSCD_SIMDS, options.simd),
+                      contexts[i] != NULL ? "compared" : "absent");
+    }
+    return 0;
+}
+
+int close_levels(void **state) {
+    (void)state;
+    for (int i = 0; i < LEVEL_COUNT; i++) cscd_context_destroy(contexts[i]);
+    return 0;
 }
