@@ -64,7 +64,7 @@ void interval_cull_everything(detector_interval *iv);
 static const double earliest_share = 1e-9;
 
 /* Closing passes have to find every contact whose true time is at most that of the latest one that may be listed, so
- * contacts up to here taint (docs/theory/culling.md, Corollary 3). */
+ * contacts up to here taint (docs/theory/culling.md, Corollary 2). */
 static const double earliest_tainting = 2e-9;
 
 /* Begins an interval: no contact is noted. */

@@ -16,7 +16,7 @@
 
 _Static_assert(sizeof(lapack_int) == sizeof(int32_t), "LAPACKE with 64-bit integers");
 
-/* Measured (docs/theory/charge.md): narrower panels make the products thin, wider ones leave few tasks. */
+/* Measured: narrower panels make the products thin, wider ones leave few tasks. */
 enum { PANEL_WIDTH = 256 };
 
 /* BLAS by its Fortran names. GSL's own library has its C names (cblas_dgemm), and where that comes before OpenBLAS, those
