@@ -38,7 +38,7 @@ typedef struct interval_recording {
     swept_interval interval;
     recorded_triangles triangles;
     recorded_pairs of_kind[2];
-    contact_lane *lane;
+    contact_worker *worker;
     size_t left; /* after what was timed last */
 } interval_recording;
 
@@ -58,7 +58,7 @@ static bool record_list(recorded_pairs *to, feature_list *list) {
     return true;
 }
 
-static bool record_triangles(recorded_triangles *to, const traversal_lane *batch) {
+static bool record_triangles(recorded_triangles *to, const traversal_worker *batch) {
     if (to->count + batch->pair_count > to->capacity) {
         to->capacity = 2 * (to->count + batch->pair_count);
         to->pairs = realloc(to->pairs, to->capacity * sizeof *to->pairs);
@@ -81,13 +81,13 @@ static bool record_pairs(interval_recording *r) {
     traversal_begin(t, &r->detector->space.bvh, TRAVERSAL_KEPT);
     while (good && more) {
         good = traversal_round(t, &more) == CSCD_OK;
-        for (uint32_t i = 0; good && i < t->lane_count; i++)
-            good = record_triangles(&r->triangles, &t->lanes[i]);
+        for (uint32_t i = 0; good && i < t->worker_count; i++)
+            good = record_triangles(&r->triangles, &t->workers[i]);
     }
     for (size_t i = 0; good && i < r->triangles.count; i += TRIANGLE_CHUNK) {
-        narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
-        good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->lane->queue[CSCD_CONTACT_VF]) &&
-               record_list(&r->of_kind[CSCD_CONTACT_EE], &r->lane->queue[CSCD_CONTACT_EE]);
+        narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->worker);
+        good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->worker->queue[CSCD_CONTACT_VF]) &&
+               record_list(&r->of_kind[CSCD_CONTACT_EE], &r->worker->queue[CSCD_CONTACT_EE]);
     }
     return good;
 }
@@ -105,7 +105,7 @@ static bool open_recording(interval_recording *r, io_error *error) {
                          uniform_growth(0.0), uniform_growth(0.0)) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
     bvh_refit(&r->detector->space.bvh, r->start.positions, r->end.positions, uniform_growth(0.0));
-    r->lane = &r->detector->space.lanes[0];
+    r->worker = &r->detector->space.workers[0];
     r->interval = (swept_interval){.mesh = r->mesh,
                                    .x0 = r->start.positions,
                                    .x1 = r->end.positions,
@@ -114,7 +114,7 @@ static bool open_recording(interval_recording *r, io_error *error) {
                                    .representatives = &r->detector->space.representatives,
                                    .filter = {.mesh = r->mesh},
                                    .limit = r->detector->config.limit};
-    contact_lane_reset(r->lane);
+    contact_worker_reset(r->worker);
     return record_pairs(r) || io_fail(error, "out of memory");
 }
 
@@ -137,8 +137,8 @@ static void close_recording(interval_recording *r) {
 static void feature_filter(interval_recording *r, cscd_contact_kind kind) {
     (void)kind;
     for (size_t i = 0; i < r->triangles.count; i += TRIANGLE_CHUNK) {
-        narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
-        for (int k = 0; k < 2; k++) r->lane->queue[k].count = 0;
+        narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->worker);
+        for (int k = 0; k < 2; k++) r->worker->queue[k].count = 0;
     }
 }
 
@@ -148,7 +148,7 @@ static void decide_list(interval_recording *r, cscd_contact_kind kind, feature_l
     feature_pairs pairs = {list->a, list->b, list->count};
     bool vf = kind == CSCD_CONTACT_VF;
     if (!signs_only) {
-        feature_queue_decide(&r->interval, kind, r->lane);
+        feature_queue_decide(&r->interval, kind, r->worker);
         return;
     }
     (vf ? table->reject_by_signs_vf : table->reject_by_signs_ee)(&source, &pairs);
@@ -157,7 +157,7 @@ static void decide_list(interval_recording *r, cscd_contact_kind kind, feature_l
 
 static void decide_in_batches(interval_recording *r, cscd_contact_kind kind, size_t size, bool signs_only) {
     const recorded_pairs *pairs = &r->of_kind[kind];
-    feature_list *list = &r->lane->queue[kind];
+    feature_list *list = &r->worker->queue[kind];
     r->left = 0;
     for (size_t i = 0; i < pairs->count; i += size) {
         size_t count = pairs->count - i < size ? pairs->count - i : size;
@@ -193,7 +193,7 @@ static double time_pairs(interval_recording *r, cscd_contact_kind kind, size_t c
                          void (*decide)(interval_recording *, cscd_contact_kind)) {
     double least = 1e300;
     for (int i = 0; i < REPEATS; i++) {
-        contact_lane_reset(r->lane);
+        contact_worker_reset(r->worker);
         double start = processor_ns();
         decide(r, kind);
         double ns = (processor_ns() - start) / (double)(count > 0 ? count : 1);
@@ -235,9 +235,9 @@ static void print_kind(interval_recording *r, cscd_contact_kind kind) {
         printf("%-3s %-10s %20zu %8.1f %8.1f\n", name, cscd_name(CSCD_SIMDS, (cscd_simd)level), pairs, signs,
                time_pairs(r, kind, pairs, by_all));
     }
-    const uint64_t *decided = r->lane->decided;
+    const uint64_t *decided = r->worker->decided;
     printf("    signs leave %.2f %%; in contact %.2f %%, by exact arithmetic %.4f %%\n",
-           percent_of(open, pairs), percent_of(r->lane->count, pairs),
+           percent_of(open, pairs), percent_of(r->worker->count, pairs),
            percent_of(decided[ELEMENTARY_EXACT], pairs));
 }
 

@@ -131,13 +131,13 @@ static double time_batches(int level, const pool_part *part) {
 static bool same_alone(int level, cscd_contact_kind kind, size_t i, const query_answer *answer,
                        query_result *out) {
     pair_batches_run(&batches, level, kind, i, i + 1);
-    const contact_lane *lane = batches.lanes[level];
-    for (int k = 0; k < ELEMENTARY_LEVEL_COUNT; k++) out->levels[k] += lane->decided[k];
-    if (lane->count != (answer->touching ? 1 : 0)) return false;
+    const contact_worker *worker = batches.workers[level];
+    for (int k = 0; k < ELEMENTARY_LEVEL_COUNT; k++) out->levels[k] += worker->decided[k];
+    if (worker->count != (answer->touching ? 1 : 0)) return false;
     return !answer->touching ||
-           (contact_lane_at(lane, 0)->toi == answer->hit.toi &&
-            memcmp(contact_lane_at(lane, 0)->point, answer->hit.point, sizeof answer->hit.point) == 0 &&
-            memcmp(contact_lane_at(lane, 0)->normal, answer->hit.normal, sizeof answer->hit.normal) == 0);
+           (contact_worker_at(worker, 0)->toi == answer->hit.toi &&
+            memcmp(contact_worker_at(worker, 0)->point, answer->hit.point, sizeof answer->hit.point) == 0 &&
+            memcmp(contact_worker_at(worker, 0)->normal, answer->hit.normal, sizeof answer->hit.normal) == 0);
 }
 
 /* out->microseconds has room for all queries of the part. */

@@ -11,7 +11,7 @@ enum { SIDE_A = 1, SIDE_B = 2, SIDE_BOTH = 3 };
 static array_list list_arrays(exact_check *check) {
     const cscd_mesh *mesh = check->mesh;
     area_list *vertices = &check->vertices, *edges = &check->edges, *triangles = &check->triangles;
-    return (array_list){{ARRAY(check->lane, 1), ARRAY(vertices->sides, mesh->vertex_count),
+    return (array_list){{ARRAY(check->worker, 1), ARRAY(vertices->sides, mesh->vertex_count),
                          ARRAY(vertices->members, mesh->vertex_count), ARRAY(edges->sides, mesh->edge_count),
                          ARRAY(edges->members, mesh->edge_count),
                          ARRAY(triangles->sides, mesh->triangle_count),
@@ -36,7 +36,7 @@ void exact_check_destroy(exact_check *check) {
     cscd_context *context = check->mesh->context;
     context_free_all(context, list_item_arrays(&check->first, 0));
     context_free_all(context, list_item_arrays(&check->second, 0));
-    if (check->lane != NULL) contact_lane_free(context, check->lane);
+    if (check->worker != NULL) contact_worker_free(context, check->worker);
     context_free_all(context, list_arrays(check));
     *check = (exact_check){0};
 }
@@ -161,7 +161,7 @@ static bool on_both_sides(const area_list *list, uint32_t feature) {
 static bool test_vertex_face(exact_check *check, const swept_interval *interval, uint32_t vertex,
                              uint32_t triangle) {
     if (triangle_contains(check->mesh->triangles[triangle], vertex)) return false;
-    narrow_phase_test_vf(interval, vertex, triangle, check->lane);
+    narrow_phase_test_vf(interval, vertex, triangle, check->worker);
     return true;
 }
 
@@ -176,7 +176,7 @@ static bool test_vertex_face_once(exact_check *check, const swept_interval *inte
 static bool test_edges(exact_check *check, const swept_interval *interval, uint32_t a, uint32_t b) {
     if (edges_share_vertex(check->mesh->edges[a], check->mesh->edges[b])) return false;
     if (a > b && on_both_sides(&check->edges, a) && on_both_sides(&check->edges, b)) return false;
-    narrow_phase_test_ee(interval, a, b, check->lane);
+    narrow_phase_test_ee(interval, a, b, check->worker);
     return true;
 }
 
@@ -200,7 +200,7 @@ static void test_pivot(exact_check *check, sweep *s, const area_items *pivots, u
 static void sweep_items(exact_check *check, sweep *s, pair_test *test) {
     const area_items *first = &check->first, *second = &check->second;
     uint32_t i = 0, j = 0;
-    while (i < first->count && j < second->count && !check->lane->out_of_memory) {
+    while (i < first->count && j < second->count && !check->worker->out_of_memory) {
         if (first->items[i].key <= second->items[j].key) {
             test_pivot(check, s, first, i, second, j, false, test);
             i++;
@@ -226,16 +226,16 @@ static cscd_status test_all(exact_check *check, sweep *s) {
     if (status == CSCD_OK) status = sweep_pairs(check, s, SIDE_B, vertices, triangles, test_vertex_face_once);
     if (status == CSCD_OK) status = sweep_pairs(check, s, SIDE_A, edges, edges, test_edges);
     if (status != CSCD_OK) return status;
-    narrow_phase_finish(s->interval, check->lane);
-    return check->lane->out_of_memory ? context_out_of_memory(check->mesh->context) : CSCD_OK;
+    narrow_phase_finish(s->interval, check->worker);
+    return check->worker->out_of_memory ? context_out_of_memory(check->mesh->context) : CSCD_OK;
 }
 
 /* ---- the check ----------------------------------------------------------------------------------------- */
 
-static area_verdict verdict_of(const contact_lane *lane, uint64_t tests) {
-    area_verdict verdict = {.contact = lane->count > 0, .tests = tests};
-    for (size_t i = 0; i < lane->count; i++) {
-        double toi = contact_lane_at(lane, i)->toi;
+static area_verdict verdict_of(const contact_worker *worker, uint64_t tests) {
+    area_verdict verdict = {.contact = worker->count > 0, .tests = tests};
+    for (size_t i = 0; i < worker->count; i++) {
+        double toi = contact_worker_at(worker, i)->toi;
         if (i == 0 || toi < verdict.toi) verdict.toi = toi;
     }
     return verdict;
@@ -245,7 +245,7 @@ cscd_status exact_check_run(exact_check *check, const sensor_partition *partitio
                             area_verdict *out) {
     swept_interval interval = {.mesh = check->mesh, .x0 = query->start, .x1 = query->end};
     cscd_status status = CSCD_OK;
-    contact_lane_reset(check->lane);
+    contact_worker_reset(check->worker);
     for (uint32_t i = 0; i < query->count_a; i++) add_cell(check, partition, query->cells_a[i], SIDE_A);
     for (uint32_t i = 0; i < query->count_b; i++) add_cell(check, partition, query->cells_b[i], SIDE_B);
     swept_box region = common_region(check, &interval);
@@ -256,6 +256,6 @@ cscd_status exact_check_run(exact_check *check, const sensor_partition *partitio
     clear_sides(&check->vertices);
     clear_sides(&check->edges);
     clear_sides(&check->triangles);
-    if (status == CSCD_OK) *out = verdict_of(check->lane, s.tests);
+    if (status == CSCD_OK) *out = verdict_of(check->worker, s.tests);
     return status;
 }

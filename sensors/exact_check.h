@@ -29,7 +29,7 @@ typedef struct exact_check {
     const cscd_mesh *mesh;
     area_list vertices, edges, triangles;
     area_items first, second;
-    contact_lane *lane;
+    contact_worker *worker;
 } exact_check;
 
 /* Cells of two different parts, without repetition, in any order. */

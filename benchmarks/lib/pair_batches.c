@@ -16,8 +16,8 @@ static bool open_level(pair_batches *b, int i, cscd_simd simd) {
         b->contexts[i] = NULL;
         return false;
     }
-    b->lanes[i] = context_allocate(b->contexts[i], 1, sizeof *b->lanes[i]);
-    return b->lanes[i] != NULL;
+    b->workers[i] = context_allocate(b->contexts[i], 1, sizeof *b->workers[i]);
+    return b->workers[i] != NULL;
 }
 
 bool pair_batches_open_best(pair_batches *b) {
@@ -30,7 +30,7 @@ bool pair_batches_open_best(pair_batches *b) {
 bool pair_batches_open(pair_batches *b) {
     *b = (pair_batches){.random = 1};
     for (int i = 0; i < PAIR_BATCH_LEVELS; i++) open_level(b, i, (cscd_simd)(CSCD_SIMD_SCALAR + i));
-    if (b->lanes[0] != NULL && b->lanes[pair_batches_best_level(b)] != NULL) return true;
+    if (b->workers[0] != NULL && b->workers[pair_batches_best_level(b)] != NULL) return true;
     pair_batches_close(b);
     return false;
 }
@@ -39,8 +39,8 @@ void pair_batches_close(pair_batches *b) {
     for (int i = 0; i < PAIR_BATCH_LEVELS; i++) {
         free(b->found[i]);
         if (b->contexts[i] == NULL) continue;
-        if (b->lanes[i] != NULL) contact_lane_free(b->contexts[i], b->lanes[i]);
-        context_free(b->contexts[i], b->lanes[i]);
+        if (b->workers[i] != NULL) contact_worker_free(b->contexts[i], b->workers[i]);
+        context_free(b->contexts[i], b->workers[i]);
         cscd_context_destroy(b->contexts[i]);
     }
     free(b->pairs);
@@ -60,7 +60,7 @@ int pair_batches_best_level(const pair_batches *b) {
 }
 
 const uint64_t *pair_batches_decided(const pair_batches *b) {
-    return b->lanes[0]->decided;
+    return b->workers[0]->decided;
 }
 
 /* ---- order and sizes ------------------------------------------------------------------------------------- */
@@ -89,21 +89,21 @@ static size_t random_size(pair_batches *b, size_t left) {
 /* ---- batches --------------------------------------------------------------------------------------------- */
 
 static void decide_batch(pair_batches *b, int level, cscd_contact_kind kind, size_t begin, size_t end) {
-    feature_list *list = &b->lanes[level]->queue[kind];
+    feature_list *list = &b->workers[level]->queue[kind];
     b->mesh.context = b->contexts[level];
     swept_interval interval = {.mesh = &b->mesh, .x0 = b->x0, .x1 = b->x1};
     for (size_t i = begin; i < end; i++)
         list->count = feature_list_put(list, list->count, b->pairs[i][0], b->pairs[i][1], 1);
-    feature_queue_decide(&interval, kind, b->lanes[level]);
+    feature_queue_decide(&interval, kind, b->workers[level]);
 }
 
 void pair_batches_run(pair_batches *b, int level, cscd_contact_kind kind, size_t begin, size_t end) {
-    contact_lane_reset(b->lanes[level]);
+    contact_worker_reset(b->workers[level]);
     decide_batch(b, level, kind, begin, end);
 }
 
 static void decide_on_level(pair_batches *b, int level, cscd_contact_kind kind, size_t count) {
-    contact_lane_reset(b->lanes[level]);
+    contact_worker_reset(b->workers[level]);
     shuffle_pairs(b, count);
     for (size_t begin = 0; begin < count;) {
         size_t end = begin + random_size(b, count - begin);
@@ -118,35 +118,36 @@ static int compare_contacts(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-static uint64_t decided_pairs(const contact_lane *lane) {
+static uint64_t decided_pairs(const contact_worker *worker) {
     uint64_t sum = 0;
-    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) sum += lane->decided[i];
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) sum += worker->decided[i];
     return sum;
 }
 
-static bool sort_lane(pair_batches *b, int level) {
-    const contact_lane *lane = b->lanes[level];
-    cscd_contact *sorted = realloc(b->found[level], (lane->count + 1) * sizeof *sorted);
+static bool sort_worker(pair_batches *b, int level) {
+    const contact_worker *worker = b->workers[level];
+    cscd_contact *sorted = realloc(b->found[level], (worker->count + 1) * sizeof *sorted);
     if (sorted == NULL) return false;
     b->found[level] = sorted;
-    for (size_t i = 0; i < lane->count; i++) memcpy(&sorted[i], contact_lane_at(lane, i), sizeof *sorted);
-    qsort(sorted, lane->count, sizeof *sorted, compare_contacts);
+    for (size_t i = 0; i < worker->count; i++)
+        memcpy(&sorted[i], contact_worker_at(worker, i), sizeof *sorted);
+    qsort(sorted, worker->count, sizeof *sorted, compare_contacts);
     return true;
 }
 
-/* Returns what is wrong with a level's lane, by itself or compared with the lowest level's; NULL: nothing. */
+/* Returns what is wrong with a level's worker, by itself or compared with the lowest level's; NULL: nothing. */
 static const char *find_problem(const pair_batches *b, int level, size_t count) {
-    const contact_lane *first = b->lanes[0], *lane = b->lanes[level];
+    const contact_worker *first = b->workers[0], *worker = b->workers[level];
     const cscd_contact *found = b->found[level];
-    if (lane->out_of_memory) return "memory ran out";
-    if (decided_pairs(lane) != count) return "the queue lost pairs, or decided some twice";
-    for (size_t i = 1; i < lane->count; i++) {
+    if (worker->out_of_memory) return "memory ran out";
+    if (decided_pairs(worker) != count) return "the queue lost pairs, or decided some twice";
+    for (size_t i = 1; i < worker->count; i++) {
         if (compare_contacts(&found[i - 1], &found[i]) == 0) return "a pair is reported twice";
     }
-    if (lane->count != first->count) return "two instruction sets differ in the number of contacts";
-    if (memcmp(lane->decided, first->decided, sizeof lane->decided) != 0)
+    if (worker->count != first->count) return "two instruction sets differ in the number of contacts";
+    if (memcmp(worker->decided, first->decided, sizeof worker->decided) != 0)
         return "two instruction sets differ in what each elementary level decided";
-    if (memcmp(found, b->found[0], lane->count * sizeof *found) != 0)
+    if (memcmp(found, b->found[0], worker->count * sizeof *found) != 0)
         return "two instruction sets differ in a contact";
     return NULL;
 }
@@ -155,9 +156,9 @@ static const char *find_problem(const pair_batches *b, int level, size_t count) 
 static const char *decide_on_all_levels(pair_batches *b, cscd_contact_kind kind, size_t count) {
     const char *problem = NULL;
     for (int level = 0; level < PAIR_BATCH_LEVELS && problem == NULL; level++) {
-        if (b->lanes[level] == NULL) continue;
+        if (b->workers[level] == NULL) continue;
         decide_on_level(b, level, kind, count);
-        problem = sort_lane(b, level) ? find_problem(b, level, count) : "memory ran out";
+        problem = sort_worker(b, level) ? find_problem(b, level, count) : "memory ran out";
     }
     return problem;
 }
@@ -184,7 +185,7 @@ const cscd_contact *pair_batches_decide(pair_batches *b, const feature_source *s
     b->mesh.edges = (uint32_t(*)[2])source->edges;
     *problem = decide_on_all_levels(b, kind, count);
     if (*problem != NULL) return NULL;
-    *contact_count = b->lanes[0]->count;
+    *contact_count = b->workers[0]->count;
     return b->found[0];
 }
 
@@ -239,7 +240,7 @@ bool pair_batches_decide_queries(pair_batches *b, cscd_contact_kind kind, const 
     *problem = decide_on_all_levels(b, kind, count);
     if (*problem != NULL) return false;
     for (size_t i = 0; i < count; i++) answers[i] = (query_answer){.touching = false};
-    for (size_t i = 0; i < b->lanes[0]->count; i++) {
+    for (size_t i = 0; i < b->workers[0]->count; i++) {
         const cscd_contact *contact = &b->found[0][i];
         answers[kind == CSCD_CONTACT_VF ? contact->a / 4 : contact->a / 2] = answer_of(contact);
     }

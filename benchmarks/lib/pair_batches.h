@@ -13,10 +13,10 @@ typedef struct query_answer {
 } query_answer;
 
 typedef struct pair_batches {
-    cscd_context *contexts[PAIR_BATCH_LEVELS]; /* NULL: the processor lacks this level */
-    contact_lane *lanes[PAIR_BATCH_LEVELS];    /* contacts, and which level decided how many pairs */
-    cscd_contact *found[PAIR_BATCH_LEVELS];    /* the contacts of each lane, sorted */
-    cscd_mesh mesh;                            /* only triangles and edges */
+    cscd_context *contexts[PAIR_BATCH_LEVELS];  /* NULL: the processor lacks this level */
+    contact_worker *workers[PAIR_BATCH_LEVELS]; /* contacts, and which level decided how many pairs */
+    cscd_contact *found[PAIR_BATCH_LEVELS];     /* the contacts of each worker, sorted */
+    cscd_mesh mesh;                             /* only triangles and edges */
     const double *x0, *x1;
     uint32_t (*pairs)[2]; /* in the order in which they are tested */
     size_t pair_capacity, query_capacity;
@@ -47,7 +47,7 @@ bool pair_batches_decide_queries(pair_batches *b, cscd_contact_kind kind, const 
                                  size_t count, query_answer *answers, const char **problem);
 
 /* For timing: turns query i into pair i, and decides pairs begin to end - 1 on one level in one batch, after
- * emptying the lane. */
+ * emptying the worker. */
 bool pair_batches_load(pair_batches *b, cscd_contact_kind kind, const elementary_query *queries,
                        size_t count);
 void pair_batches_run(pair_batches *b, int level, cscd_contact_kind kind, size_t begin, size_t end);

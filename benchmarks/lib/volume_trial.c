@@ -17,7 +17,7 @@ typedef struct volume_trial {
     volume_tree tree;
     volume_search search, earlier[VOLUME_KINDS]; /* what the kinds have found in the present interval */
     swept_interval interval;
-    contact_lane lane;
+    contact_worker worker;
     wanted_pairs wanted;
     bool *keeps_adjacent; /* per region */
     double ms[VOLUME_KINDS][VOLUME_STAGES][VOLUME_ROUNDS];
@@ -60,7 +60,7 @@ static bool make_tree(volume_trial *t) {
 }
 
 static void free_trial(volume_trial *t) {
-    contact_lane_free(t->recording->context, &t->lane);
+    contact_worker_free(t->recording->context, &t->worker);
     wanted_pairs_free(&t->wanted);
     for (int kind = 0; kind < VOLUME_KINDS; kind++) volume_search_close(&t->earlier[kind]);
     volume_search_close(&t->search);
@@ -82,10 +82,10 @@ static void test_filtered(volume_trial *t) {
         const uint32_t *pair = t->search.pairs[i];
         slots[count++] = (triangle_pair){hierarchy->slots[pair[0]], hierarchy->slots[pair[1]]};
         if (count < PAIRS_AT_ONCE && i + 1 < t->search.count) continue;
-        narrow_phase_test(&t->interval, slots, count, &t->lane);
+        narrow_phase_test(&t->interval, slots, count, &t->worker);
         count = 0;
     }
-    narrow_phase_finish(&t->interval, &t->lane);
+    narrow_phase_finish(&t->interval, &t->worker);
 }
 
 /* Only pairs of triangles that share a vertex have such features, and of these only the ones that culling lists. */
@@ -98,12 +98,12 @@ static bool features_adjacent(const uint32_t *a, int a_count, const uint32_t *b,
 
 static void queue_vertex(volume_trial *t, uint32_t vertex, uint32_t triangle) {
     if (!features_adjacent(&vertex, 1, t->interval.mesh->triangles[triangle], 3))
-        narrow_phase_test_vf(&t->interval, vertex, triangle, &t->lane);
+        narrow_phase_test_vf(&t->interval, vertex, triangle, &t->worker);
 }
 
 static void queue_edges(volume_trial *t, uint32_t a, uint32_t b) {
     if (!features_adjacent(t->interval.mesh->edges[a], 2, t->interval.mesh->edges[b], 2))
-        narrow_phase_test_ee(&t->interval, a, b, &t->lane);
+        narrow_phase_test_ee(&t->interval, a, b, &t->worker);
 }
 
 static void queue_features(volume_trial *t, triangle_pair pair, uint32_t features) {
@@ -128,7 +128,7 @@ static void test_directly(volume_trial *t) {
             representatives_select(&t->interval, &pair, 1, &selection.features);
         queue_features(t, pair, selection.features);
     }
-    narrow_phase_finish(&t->interval, &t->lane);
+    narrow_phase_finish(&t->interval, &t->worker);
 }
 
 /* ---- an interval ------------------------------------------------------------------------------------- */
@@ -171,13 +171,13 @@ static void run_round(volume_trial *t, int round) {
         at[1] = processor_ms();
         t->kernels->search(&t->tree, (volume_kind)kind, &t->search);
         at[2] = processor_ms();
-        contact_lane_reset(&t->lane);
+        contact_worker_reset(&t->worker);
         test_filtered(t);
-        t->tested[kind][0] = t->lane.count;
+        t->tested[kind][0] = t->worker.count;
         at[3] = processor_ms();
-        contact_lane_reset(&t->lane);
+        contact_worker_reset(&t->worker);
         test_directly(t);
-        t->tested[kind][1] = t->lane.count;
+        t->tested[kind][1] = t->worker.count;
         at[4] = processor_ms();
         for (int i = 0; i < VOLUME_STAGES; i++) t->ms[kind][i][round] = at[i + 1] - at[i];
         volume_search last = t->earlier[kind];
@@ -206,7 +206,7 @@ static bool check_interval(volume_trial *t, uint32_t interval, io_error *error) 
     const char *problem = NULL;
     for (int kind = 0; problem == NULL && kind < VOLUME_KINDS; kind++) {
         const volume_search *found = &t->earlier[kind];
-        if (found->out_of_memory || t->lane.out_of_memory)
+        if (found->out_of_memory || t->worker.out_of_memory)
             problem = "out of memory";
         else if (!wanted_pairs_found(&t->wanted, found))
             problem = "misses triangles whose features are in contact";

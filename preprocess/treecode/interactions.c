@@ -125,7 +125,7 @@ static void end_lists(size_t *ends, size_t list_count) {
     ends[0] = 0;
 }
 
-/* Sorts the far items of the nodes that a lane gets by order: there are few of each, and mostly in order. */
+/* Sorts the far items of the nodes that a worker gets by order: there are few of each, and mostly in order. */
 static void sort_far_items(void *data, uint32_t task) {
     const interactions *lists = data;
     const size_t end = parallel_share(lists->node_count, task + 1, TREE_TASKS_MOST);

@@ -6,7 +6,7 @@
 
 enum { AROUND_MOST = 64, BLOCK_MOST = SOURCES_PER_LEAF + AROUND_MOST };
 
-/* Room of a lane for one leaf at a time. */
+/* Room of a worker for one leaf at a time. */
 typedef struct block_room {
     /* The transposed equations of the block, and on their right the unit vectors of the leaf's own; then the
      * solutions. */
@@ -181,28 +181,28 @@ static void invert_block(near_blocks *b, uint32_t l, block_room *room) {
 
 typedef struct block_inversion {
     near_blocks *blocks;
-    block_room *rooms; /* of each lane */
-    uint32_t lane_count;
+    block_room *rooms; /* of each worker */
+    uint32_t worker_count;
 } block_inversion;
 
-static void invert_share(void *data, uint32_t lane) {
+static void invert_share(void *data, uint32_t worker) {
     const block_inversion *inversion = data;
     near_blocks *b = inversion->blocks;
     const size_t leaves = b->t->tree.leaf_count,
-                 end = parallel_share(leaves, lane + 1, inversion->lane_count);
-    for (size_t l = parallel_share(leaves, lane, inversion->lane_count); l < end; l++) {
+                 end = parallel_share(leaves, worker + 1, inversion->worker_count);
+    for (size_t l = parallel_share(leaves, worker, inversion->worker_count); l < end; l++) {
         if (!progress_go_on(&b->t->context->progress, (double)l / (double)leaves)) return;
         list_block(b, (uint32_t)l);
-        invert_block(b, (uint32_t)l, &inversion->rooms[lane]);
+        invert_block(b, (uint32_t)l, &inversion->rooms[worker]);
     }
 }
 
 static cscd_status invert_blocks(near_blocks *b) {
     cscd_context *context = b->t->context;
     block_inversion inversion = {b, NULL, parallel_thread_count(context->threads)};
-    inversion.rooms = context_reserve(context, inversion.lane_count, sizeof *inversion.rooms);
+    inversion.rooms = context_reserve(context, inversion.worker_count, sizeof *inversion.rooms);
     if (inversion.rooms == NULL) return context_out_of_memory(context);
-    parallel_run(context->threads, inversion.lane_count, invert_share, &inversion);
+    parallel_run(context->threads, inversion.worker_count, invert_share, &inversion);
     context_free(context, inversion.rooms);
     return context_progress_status(context);
 }

@@ -77,7 +77,7 @@ static void merge_cones(const sealing *s) {
     }
 }
 
-static bool passes_test(const sealing *s, uint32_t node, uint32_t lane) {
+static bool passes_test(const sealing *s, uint32_t node, uint32_t worker) {
     const patches *p = s->p;
     size_t first = p->contour_offsets[node];
     const contour_query query = {.mesh = s->mesh,
@@ -89,41 +89,41 @@ static bool passes_test(const sealing *s, uint32_t node, uint32_t lane) {
                                  .axis = p->cones[node].axis,
                                  .skipped = s->published && p->parent_tested[node] ? p->inherited[node] : 0,
                                  .published = s->published};
-    return p->test->passes(&query, (char *)p->scratch + lane * p->longest * p->test->scratch_size);
+    return p->test->passes(&query, (char *)p->scratch + worker * p->longest * p->test->scratch_size);
 }
 
 /* Returns true if the children are to be decided, too. */
-static bool decide_node(const sealing *s, uint32_t node, uint32_t lane) {
+static bool decide_node(const sealing *s, uint32_t node, uint32_t worker) {
     patches *p = s->p;
     const patch_node *n = &p->tree.nodes[node];
     if (n->count == 1) return false;
     bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
     p->tested[node] = tested;
-    p->passed[node] = tested && passes_test(s, node, lane);
+    p->passed[node] = tested && passes_test(s, node, worker);
     if (p->passed[node] || patch_is_leaf(n)) return false;
     p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
     p->reached[node + 1] = p->reached[n->right] = true;
     return true;
 }
 
-static void decide_wave(void *data, uint32_t lane) {
+static void decide_wave(void *data, uint32_t worker) {
     sealing *s = data;
     patches *p = s->p;
     for (;;) {
         uint32_t at = atomic_fetch_add(&s->next, 1);
         if (at >= s->wave_end) return;
-        decide_node(s, p->stack[at], lane);
+        decide_node(s, p->stack[at], worker);
     }
 }
 
-static void decide_small(void *data, uint32_t lane) {
+static void decide_small(void *data, uint32_t worker) {
     sealing *s = data;
     patches *p = s->p;
     for (;;) {
         uint32_t at = atomic_fetch_add(&s->next, 1);
         if (at >= p->small_count) return;
         for (uint32_t i = p->small_roots[at]; i < p->small_ends[at]; i++) {
-            if (p->reached[i]) decide_node(s, i, lane);
+            if (p->reached[i]) decide_node(s, i, worker);
         }
     }
 }
@@ -136,7 +136,7 @@ static void append_large(patches *p, uint32_t node, uint32_t *end) {
 static void decide_all(sealing *s) {
     patches *p = s->p;
     parallel *threads = s->mesh->context->threads;
-    uint32_t lanes = parallel_thread_count(threads), begin = 0, end = 0;
+    uint32_t workers = parallel_thread_count(threads), begin = 0, end = 0;
     for (uint32_t i = 0; i < p->tree.root_count; i++) {
         p->reached[p->tree.roots[i]] = true;
         append_large(p, p->tree.roots[i], &end);
@@ -144,7 +144,7 @@ static void decide_all(sealing *s) {
     while (begin < end) {
         s->wave_end = end;
         atomic_store(&s->next, begin);
-        parallel_run(threads, end - begin < lanes ? end - begin : lanes, decide_wave, s);
+        parallel_run(threads, end - begin < workers ? end - begin : workers, decide_wave, s);
         for (uint32_t last = end; begin < last; begin++) {
             uint32_t node = p->stack[begin];
             if (p->passed[node]) continue;
@@ -153,7 +153,7 @@ static void decide_all(sealing *s) {
         }
     }
     atomic_store(&s->next, 0);
-    parallel_run(threads, lanes, decide_small, s);
+    parallel_run(threads, workers, decide_small, s);
 }
 
 void patches_seal(patches *p, const cscd_mesh *mesh, const double *x0, const double *x1, bool published) {

@@ -346,42 +346,43 @@ static cscd_status find_pairs(void *state, const own_interval *interval, cscd_ti
 typedef struct feature_testing {
     const published_search *search;
     const swept_interval *interval;
-    contact_lane *lane;
+    contact_worker *worker;
 } feature_testing;
 
 static void test_features(void *data, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const feature_testing *now = data;
     if (!pair_filter_admits_features(&now->interval->filter, kind, a, b)) return;
-    now->lane->feature_pairs++;
+    now->worker->feature_pairs++;
     if (now->search->roots == NULL) {
         (kind == CSCD_CONTACT_VF ? narrow_phase_test_vf : narrow_phase_test_ee)(now->interval, a, b,
-                                                                                now->lane);
+                                                                                now->worker);
         return;
     }
     elementary_query query;
     elementary_contact contact;
     swept_interval_load(now->interval, kind, a, b, &query);
-    now->lane->decided[ELEMENTARY_ROOTS]++;
+    now->worker->decided[ELEMENTARY_ROOTS]++;
     if (plain_test(now->search->roots, &query, kind, &contact))
-        contact_lane_add(now->search->context, now->lane, kind, a, b, &contact, false);
+        contact_worker_add(now->search->context, now->worker, kind, a, b, &contact, false);
 }
 
 enum { PAIRS_BETWEEN_LOOKS = 256 };
 
-static void test_pairs(void *state, const own_interval *interval, contact_lane *lane) {
+static void test_pairs(void *state, const own_interval *interval, contact_worker *worker) {
     const published_search *s = state;
-    feature_testing testing = {s, interval->swept, lane};
-    lane->suspended = false;
-    while (s->mesh != NULL && lane->cursor < s->pairs.count && !lane->out_of_memory) {
-        if (lane->cursor % PAIRS_BETWEEN_LOOKS == 0 &&
-            !progress_go_on(&s->context->progress, (double)lane->cursor / (double)s->pairs.count))
+    feature_testing testing = {s, interval->swept, worker};
+    worker->suspended = false;
+    while (s->mesh != NULL && worker->cursor < s->pairs.count && !worker->out_of_memory) {
+        if (worker->cursor % PAIRS_BETWEEN_LOOKS == 0 &&
+            !progress_go_on(&s->context->progress, (double)worker->cursor / (double)s->pairs.count))
             return;
-        const uint32_t *pair = s->pairs.pairs[lane->cursor++];
+        const uint32_t *pair = s->pairs.pairs[worker->cursor++];
         if (pair_filter_admits_triangles(&interval->swept->filter, pair[0], pair[1]))
             feature_assignment_test(interval, pair[0], pair[1], test_features, &testing);
-        if (lane->cursor % PAIRS_BETWEEN_LOOKS == 0 && contact_lane_suspend(lane, lane->cursor)) return;
+        if (worker->cursor % PAIRS_BETWEEN_LOOKS == 0 && contact_worker_suspend(worker, worker->cursor))
+            return;
     }
-    narrow_phase_finish(interval->swept, lane);
+    narrow_phase_finish(interval->swept, worker);
 }
 
 /* ---- as a search ----------------------------------------------------------------------------------------- */

@@ -430,7 +430,7 @@ typedef struct leaf_cache {
 } leaf_cache;
 
 /* The work of one thread: its share of the open block pairs, and its batch of results. */
-typedef struct traversal_lane {
+typedef struct traversal_worker {
     _Alignas(CACHE_LINE_SIZE) block_pair *stack;
     size_t stack_count, stack_capacity;
     triangle_pair *pairs;
@@ -440,7 +440,7 @@ typedef struct traversal_lane {
     double search_ms, consume_ms;    /* time of filling batches since the begin; of the rest, by the caller */
     leaf_cache cache;
     bool out_of_memory;
-} traversal_lane;
+} traversal_worker;
 
 /* The most that one visit adds: the pairs of 64 leaf pairs, and 64 pairs of children and 8 children with themselves. */
 enum { TRAVERSAL_PAIRS_PER_VISIT = 64 * 64, TRAVERSAL_PUSHES_PER_VISIT = 72 };
@@ -453,12 +453,12 @@ typedef struct traversal {
     bool whole;                /* set by the caller: pairs of inactive triangles are found as well */
     bool skips_inactive;       /* this pass does not find pairs of inactive triangles */
     collapsed_trees collapsed; /* set by the caller, after bvh_mark_collapsed */
-    traversal_lane *lanes;     /* one per thread of the context */
-    uint32_t lane_count;
+    traversal_worker *workers; /* one per thread of the context */
+    uint32_t worker_count;
     uint32_t
-        busy_lanes; /* the lanes that share this traversal are the first ones; 1: it is too small to be shared */
+        busy_workers; /* the workers that share this traversal are the first ones; 1: it is too small to be shared */
 
-    /* Open block pairs. Those from next_share on have not been taken by a lane yet. */
+    /* Open block pairs. Those from next_share on have not been taken by a worker yet. */
     block_pair *shares;
     uint32_t share_count;
     atomic_uint next_share;
@@ -472,26 +472,26 @@ void traversal_destroy(traversal *t);
 /* Starts a pass at the root of the hierarchy, which must be up to date. */
 void traversal_begin(traversal *t, const bvh *hierarchy, traversal_pass pass);
 
-/* Fills the lane's batch with some pairs that no lane has found yet, usually TRAVERSAL_BATCH_ENOUGH or a few more.
- * Each lane runs on one thread at a time, independently of the others. False: the batch is empty, because only pairs
- * that other lanes work on are left, or because the call is cancelled. The union of all batches, and the sum of
- * boxes_tested, are the same for any lane count. */
-bool traversal_fill(traversal *t, uint32_t lane);
+/* Fills the worker's batch with some pairs that no worker has found yet, usually TRAVERSAL_BATCH_ENOUGH or a few more.
+ * Each worker runs on one thread at a time, independently of the others. False: the batch is empty, because only pairs
+ * that other workers work on are left, or because the call is cancelled. The union of all batches, and the sum of
+ * boxes_tested, are the same for any worker count. */
+bool traversal_fill(traversal *t, uint32_t worker);
 
 /* OUT_OF_MEMORY: a stack could not grow, and pairs are missing. */
 cscd_status traversal_status(const traversal *t);
 
-/* Fills the batches of all lanes at once, as full as they get. *more is false when every batch is empty. Between two
+/* Fills the batches of all workers at once, as full as they get. *more is false when every batch is empty. Between two
  * rounds the caller consumes the batches. */
 cscd_status traversal_round(traversal *t, bool *more);
 
-/* Returns the share of the block pairs that lanes have taken; 0 as long as it is not known. */
+/* Returns the share of the block pairs that workers have taken; 0 as long as it is not known. */
 double traversal_done(const traversal *t);
 
 uint64_t traversal_boxes_tested(const traversal *t);
 
 /* A pass may be cut into tasks instead, numbered by what the trees alone say: the same ones in the same order for any
- * lane count. Each finds its pairs in an order of its own, whichever lane does it. */
+ * worker count. Each finds its pairs in an order of its own, whichever worker does it. */
 enum {
     TRAVERSAL_TASKS_WANTED = 1024,
     TRAVERSAL_TASKS_MAX = TRAVERSAL_TASKS_WANTED + TRAVERSAL_PUSHES_PER_VISIT
@@ -500,11 +500,11 @@ enum {
 /* Starts a pass at the root of the hierarchy, of t->share_count tasks. OUT_OF_MEMORY: a stack could not grow. */
 cscd_status traversal_begin_tasks(traversal *t, const bvh *hierarchy, traversal_pass pass);
 
-/* Lets a lane begin a task, and forget the rest of the one before. */
-void traversal_begin_task(traversal *t, uint32_t lane, uint32_t task);
+/* Lets a worker begin a task, and forget the rest of the one before. */
+void traversal_begin_task(traversal *t, uint32_t worker, uint32_t task);
 
-/* Fills the lane's batch with the next pairs of its task. False: there are none left, or the status says why. */
-bool traversal_fill_from_task(traversal *t, uint32_t lane);
+/* Fills the worker's batch with the next pairs of its task. False: there are none left, or the status says why. */
+bool traversal_fill_from_task(traversal *t, uint32_t worker);
 
 /* ---- the skin ---------------------------------------------------------------------------------------------- */
 

@@ -66,9 +66,9 @@ typedef struct bvh_kernels {
     uint32_t (*near_triangles)(const bvh *hierarchy, const bvh_tree *tree, const bvh_leaf *leaf,
                                const framed_query *q, double squared);
 
-    /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
+    /* Visits block pairs of the worker's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */
-    void (*search)(const traversal *t, traversal_lane *lane, size_t visits_max);
+    void (*search)(const traversal *t, traversal_worker *worker, size_t visits_max);
 } bvh_kernels;
 
 DECLARE_KERNELS(bvh_kernels);

@@ -25,7 +25,7 @@ void SIMD_NAME(orient_corners)(const bvh_tree *tree, f32x8 (*corners)[2][3], uin
 void SIMD_NAME(near_children)(const float *bounds, const framed_query *q, float *out);
 uint32_t SIMD_NAME(near_triangles)(const bvh *hierarchy, const bvh_tree *tree, const bvh_leaf *leaf,
                                    const framed_query *q, double squared);
-void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);
+void SIMD_NAME(search)(const traversal *t, traversal_worker *worker, size_t visits_max);
 
 /* ---- corners and volumes of a leaf ------------------------------------------------------------------------- */
 

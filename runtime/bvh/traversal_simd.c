@@ -162,9 +162,9 @@ static inline uint32_t near_lane(const leaf_volumes *volumes, const float *bound
     return ~lanes_apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
 }
 
-static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first, uint32_t lanes) {
+static inline void add_pairs(traversal_worker *worker, uint32_t slot, uint32_t first, uint32_t lanes) {
     while (lanes != 0) {
-        lane->pairs[lane->pair_count++] = (triangle_pair){slot, first + (uint32_t)__builtin_ctz(lanes)};
+        worker->pairs[worker->pair_count++] = (triangle_pair){slot, first + (uint32_t)__builtin_ctz(lanes)};
         lanes &= lanes - 1;
     }
 }
@@ -216,7 +216,7 @@ static inline uint32_t lanes_without_shared_vertex(const bvh *hierarchy, const l
     return kept;
 }
 
-static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
+static inline void compare_leaves(const traversal *t, traversal_worker *worker, const leaf_pair *pair,
                                   bool skip_adjacent, bool one_tree, bool still, const displacement *d) {
     const bvh *hierarchy = t->bvh;
     const lane_comparison c = {
@@ -233,23 +233,23 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         int i = __builtin_ctz(rows);
         uint32_t lanes = lanes_to_compare(&c, i) & pair->columns;
         if (lanes == 0) continue;
-        lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+        worker->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, still, d);
         if (lanes != 0 && skip_adjacent) {
             uint32_t kept = hierarchy->keeps_hub_pairs
                                 ? lanes_without_small_star(hierarchy, pair, i, lanes)
                                 : lanes_without_shared_vertex(hierarchy, pair, i, lanes, one_tree);
-            lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
+            worker->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
         }
         if (lanes == 0) continue;
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, still, d);
-        add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
+        add_pairs(worker, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
     }
 }
 
 /* First the active triangles of a with all of b, then the others with the active ones of b. */
-static void compare_active(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
+static void compare_active(const traversal *t, traversal_worker *worker, const leaf_pair *pair,
                            bool skip_adjacent, const displacement *d) {
     uint32_t inactive_a = t->bvh->leaf_inactive[pair->a], inactive_b = t->bvh->leaf_inactive[pair->b];
     for (int i = 0; i < 2; i++) {
@@ -258,23 +258,23 @@ static void compare_active(const traversal *t, traversal_lane *lane, const leaf_
         if (i == 1) part.columns &= ~inactive_b;
         if (part.rows == 0 || part.columns == 0) continue;
         if (d == NULL)
-            compare_leaves(t, lane, &part, skip_adjacent, true, false, NULL);
+            compare_leaves(t, worker, &part, skip_adjacent, true, false, NULL);
         else
-            compare_leaves(t, lane, &part, skip_adjacent, false, false, d);
+            compare_leaves(t, worker, &part, skip_adjacent, false, false, d);
     }
 }
 
 /* Where inactive triangles are skipped, or volumes are those of a moment, of which one end is enough. Not inline, so that
  * nothing of it is in the way of other passes. */
-static __attribute__((noinline)) void compare_leaves_otherwise(const traversal *t, traversal_lane *lane,
+static __attribute__((noinline)) void compare_leaves_otherwise(const traversal *t, traversal_worker *worker,
                                                                const leaf_pair *pair, bool skip_adjacent,
                                                                const displacement *d) {
     if (t->skips_inactive)
-        compare_active(t, lane, pair, skip_adjacent, d);
+        compare_active(t, worker, pair, skip_adjacent, d);
     else if (d == NULL)
-        compare_leaves(t, lane, pair, skip_adjacent, true, true, NULL);
+        compare_leaves(t, worker, pair, skip_adjacent, true, true, NULL);
     else
-        compare_leaves(t, lane, pair, skip_adjacent, false, true, d);
+        compare_leaves(t, worker, pair, skip_adjacent, false, true, d);
 }
 
 /* Returns those of the lanes of b whose hub volumes do not overlap that of lane i of a. */
@@ -302,7 +302,7 @@ static __attribute__((noinline)) uint32_t lanes_apart_as_slivers(const bvh *hier
 /* ---- blocks -------------------------------------------------------------------------------------------- */
 
 /* Compares child i of block a with children of block b. */
-static inline void visit_children(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
+static inline void visit_children(const traversal *t, traversal_worker *worker, const block_pair *at, int i,
                                   uint32_t lanes, const displacement *d) {
     const bvh *hierarchy = t->bvh;
     const bvh_level *level = &hierarchy->levels[at->level];
@@ -316,33 +316,33 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
         uint32_t child_b = first_b + (uint32_t)j;
         if (at->level > 0) {
             bool trees = at->level == hierarchy->tree_level;
-            lane->stack[lane->stack_count++] = (block_pair){child_a, child_b, trees ? child_a : at->tree_a,
-                                                            trees ? child_b : at->tree_b, at->level - 1};
+            worker->stack[worker->stack_count++] = (block_pair){
+                child_a, child_b, trees ? child_a : at->tree_a, trees ? child_b : at->tree_b, at->level - 1};
             continue;
         }
         leaf_pair pair = {child_a, child_b, NULL, NULL, ALL_LANES, ALL_LANES};
-        pair.volumes_a = leaf_volumes_of(hierarchy, &lane->cache, child_a, &hierarchy->trees[at->tree_a]);
+        pair.volumes_a = leaf_volumes_of(hierarchy, &worker->cache, child_a, &hierarchy->trees[at->tree_a]);
         if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
-            leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;
+            leaf_volumes *copy = (leaf_volumes *)worker->cache.volumes + LEAF_CACHE_SIZE;
             *copy = *pair.volumes_a;
             pair.volumes_a = copy;
         }
-        pair.volumes_b = leaf_volumes_of(hierarchy, &lane->cache, child_b, &hierarchy->trees[at->tree_b]);
+        pair.volumes_b = leaf_volumes_of(hierarchy, &worker->cache, child_b, &hierarchy->trees[at->tree_b]);
         if (child_a != child_b) {
             pair.columns = near_lane(pair.volumes_b, level->bounds + at->a * stride, i, d);
             if (pair.columns == 0) continue;
             if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
         }
         if (otherwise)
-            compare_leaves_otherwise(t, lane, &pair, skip_adjacent, d);
+            compare_leaves_otherwise(t, worker, &pair, skip_adjacent, d);
         else if (d == NULL) /* compiled separately, because it is most of the work */
-            compare_leaves(t, lane, &pair, skip_adjacent, true, false, NULL);
+            compare_leaves(t, worker, &pair, skip_adjacent, true, false, NULL);
         else
-            compare_leaves(t, lane, &pair, skip_adjacent, false, false, d);
+            compare_leaves(t, worker, &pair, skip_adjacent, false, false, d);
     }
 }
 
-static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_pair at) {
+static inline void visit_blocks(const traversal *t, traversal_worker *worker, block_pair at) {
     const bvh *hierarchy = t->bvh;
     const bvh_level *level = &hierarchy->levels[at.level];
     bool below = at.level < hierarchy->tree_level, crosses = below && at.tree_a != at.tree_b;
@@ -385,7 +385,7 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
         const object_set *set = sets != NULL ? &sets[(size_t)at.a * LANES + (size_t)i] : NULL;
         if (set != NULL) lanes = lanes_looked_at(set, sets + (size_t)at.b * LANES, lanes);
         if (lanes != 0) {
-            lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+            worker->boxes_tested += (uint32_t)__builtin_popcount(lanes);
             lanes &= ~lanes_apart(bounds_a, bounds_b, i, hierarchy->axis_count, d);
         }
         if (hubs != NULL && lanes != 0)
@@ -400,15 +400,15 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
             if (set != NULL) own = own && object_sets_may_meet(set, set);
             if (own && (c.resting_a >> i & 1) == 0) lanes |= 1u << i;
         }
-        if (lanes != 0) visit_children(t, lane, &at, i, lanes, d);
+        if (lanes != 0) visit_children(t, worker, &at, i, lanes, d);
     }
 }
 
-void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max) {
-    while (lane->stack_count > 0 && visits_max-- > 0) {
-        if (lane->pair_count + TRAVERSAL_PAIRS_PER_VISIT > TRAVERSAL_BATCH_SIZE) return;
-        if (lane->stack_count + TRAVERSAL_PUSHES_PER_VISIT > lane->stack_capacity) return;
-        visit_blocks(t, lane, lane->stack[--lane->stack_count]);
+void SIMD_NAME(search)(const traversal *t, traversal_worker *worker, size_t visits_max) {
+    while (worker->stack_count > 0 && visits_max-- > 0) {
+        if (worker->pair_count + TRAVERSAL_PAIRS_PER_VISIT > TRAVERSAL_BATCH_SIZE) return;
+        if (worker->stack_count + TRAVERSAL_PUSHES_PER_VISIT > worker->stack_capacity) return;
+        visit_blocks(t, worker, worker->stack[--worker->stack_count]);
     }
 }
 

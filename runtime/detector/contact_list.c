@@ -1,4 +1,4 @@
-/* Lists that calls return: their memory, and the contacts of all lanes gathered into one sorted list. */
+/* Lists that calls return: their memory, and the contacts of all workers gathered into one sorted list. */
 #include "runtime/detector/contact_list.h"
 
 #include "src/core/sort.h"
@@ -63,27 +63,27 @@ void result_buffer_free(cscd_context *context, result_buffer *buffer) {
 
 /* ---- gathering ------------------------------------------------------------------------------------- */
 
-/* Up to this number, every lane gets room for all contacts; beyond it, for this number and twice its
+/* Up to this number, every worker gets room for all contacts; beyond it, for this number and twice its
  * share of all. */
 enum { CONTACTS_FOR_ALL = 4096 };
 
 /* The number of contacts that one thread copies at a time. */
 enum { CONTACTS_PER_COPY = 4096 };
 
-/* The number of contacts that a lane finds differs from run to run, so without this a lane might have to grow in an
- * interval that is like the ones before. found: the contacts of all lanes together. */
-static cscd_status reserve_lanes(search_space *s, size_t found) {
-    uint32_t lanes = s->traversal.busy_lanes;
-    size_t wanted = lanes > 1 && found > CONTACTS_FOR_ALL ? 2 * found / lanes + CONTACTS_FOR_ALL : found;
-    for (uint32_t i = 0; lanes > 1 && i < lanes; i++) {
-        if (!contact_lane_reserve(s->context, &s->lanes[i], wanted)) return CSCD_OUT_OF_MEMORY;
+/* The number of contacts that a worker finds differs from run to run, so without this a worker might have to grow in an
+ * interval that is like the ones before. found: the contacts of all workers together. */
+static cscd_status reserve_workers(search_space *s, size_t found) {
+    uint32_t workers = s->traversal.busy_workers;
+    size_t wanted = workers > 1 && found > CONTACTS_FOR_ALL ? 2 * found / workers + CONTACTS_FOR_ALL : found;
+    for (uint32_t i = 0; workers > 1 && i < workers; i++) {
+        if (!contact_worker_reserve(s->context, &s->workers[i], wanted)) return CSCD_OUT_OF_MEMORY;
     }
     return CSCD_OK;
 }
 
 static size_t count_found(const search_space *s) {
     size_t found = 0;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) found += s->lanes[i].count;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) found += s->workers[i].count;
     return found;
 }
 
@@ -99,35 +99,36 @@ cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t ite
                                 size_t *count) {
     size_t found = count_found(s), kept = 0;
     cscd_status status = result_buffer_reserve(s->context, buffer, found, item_size, sizeof(contact_key));
-    if (status == CSCD_OK) status = reserve_lanes(s, found);
+    if (status == CSCD_OK) status = reserve_workers(s, found);
     if (status != CSCD_OK) return status;
     contact_key *keys = buffer->keys;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        const contact_lane *lane = &s->lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            const cscd_contact *contact = contact_lane_at(lane, j);
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        const contact_worker *worker = &s->workers[i];
+        for (size_t j = 0; j < worker->count; j++) {
+            const cscd_contact *contact = contact_worker_at(worker, j);
             keys[kept] = (contact_key){0, contact};
-            kept += j < lane->settled || !is_excluded(e, contact);
+            kept += j < worker->settled || !is_excluded(e, contact);
         }
     }
     *count = s->counted + kept;
     return is_too_long(s, *count) ? CSCD_LIST_TOO_LONG : CSCD_OK;
 }
 
-/* Moves what is kept of a lane to the items, and gives back its memory block by block. */
-static size_t move_lane(cscd_context *context, contact_lane *lane, const exclusions *e, cscd_contact *items) {
+/* Moves what is kept of a worker to the items, and gives back its memory block by block. */
+static size_t move_worker(cscd_context *context, contact_worker *worker, const exclusions *e,
+                          cscd_contact *items) {
     size_t kept = 0, i = 0;
-    for (uint32_t block = 0; block < lane->block_count; block++) {
-        const size_t end = (size_t)LANE_FIRST_BLOCK << block;
-        for (; i < end && i < lane->count; i++) {
-            const cscd_contact *contact = contact_lane_at(lane, i);
-            if (i >= lane->settled && is_excluded(e, contact)) continue;
+    for (uint32_t block = 0; block < worker->block_count; block++) {
+        const size_t end = (size_t)WORKER_FIRST_BLOCK << block;
+        for (; i < end && i < worker->count; i++) {
+            const cscd_contact *contact = contact_worker_at(worker, i);
+            if (i >= worker->settled && is_excluded(e, contact)) continue;
             memcpy(&items[kept++], contact, sizeof *items);
         }
-        context_free(context, lane->blocks[block]);
-        lane->blocks[block] = NULL;
+        context_free(context, worker->blocks[block]);
+        worker->blocks[block] = NULL;
     }
-    contact_lane_free(context, lane);
+    contact_worker_free(context, worker);
     return kept;
 }
 
@@ -137,9 +138,9 @@ static cscd_status gather_long(search_space *s, const exclusions *e, result_buff
     if (status != CSCD_OK) return status;
     cscd_contact *items = buffer->items;
     size_t kept = 0;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
         if (!progress_go_on(&s->context->progress, 1.0)) return context_progress_status(s->context);
-        kept += move_lane(s->context, &s->lanes[i], e, items + kept);
+        kept += move_worker(s->context, &s->workers[i], e, items + kept);
     }
     *count = s->counted + kept;
     if (is_too_long(s, *count)) return CSCD_LIST_TOO_LONG;
@@ -180,13 +181,13 @@ static void sort_contacts(contact_key *keys, contact_key *spare, size_t count) {
 
 /* ---- the list -------------------------------------------------------------------------------------- */
 
-static void add_lane(const contact_lane *lane, cscd_counters *counters) {
-    counters->feature_pairs += lane->feature_pairs;
-    counters->by_signs += lane->decided[ELEMENTARY_SIGNS];
-    counters->by_roots += lane->decided[ELEMENTARY_ROOTS];
-    counters->by_exact += lane->decided[ELEMENTARY_EXACT];
-    counters->tests += lane->separations;
-    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) counters->tests += lane->decided[i];
+static void add_worker(const contact_worker *worker, cscd_counters *counters) {
+    counters->feature_pairs += worker->feature_pairs;
+    counters->by_signs += worker->decided[ELEMENTARY_SIGNS];
+    counters->by_roots += worker->decided[ELEMENTARY_ROOTS];
+    counters->by_exact += worker->decided[ELEMENTARY_EXACT];
+    counters->tests += worker->separations;
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) counters->tests += worker->decided[i];
 }
 
 static void add_contact(const cscd_contact *contact, cscd_counters *counters) {
@@ -240,7 +241,7 @@ cscd_status contact_list_collect(search_space *s, const exclusions *e, result_bu
     if (status == CSCD_LIST_TOO_LONG) *out = (cscd_contacts){.count = count};
     if (status != CSCD_OK) return status;
     contact_key *keys = buffer->keys;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) add_lane(&s->lanes[i], counters);
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) add_worker(&s->workers[i], counters);
     for (size_t i = 0; i < count; i++) {
         keys[i].key = bits_of(keys[i].contact->toi);
         add_contact(keys[i].contact, counters);

@@ -82,14 +82,14 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
 /* ---- parts --------------------------------------------------------------------------------------------- */
 
 array_list detector_arrays(cscd_detector *d) {
-    size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
+    size_t components = d->mesh->component_count, workers = d->space.traversal.worker_count;
     return (array_list){
         {ARRAY(d->interval.culled, components), ARRAY(d->interval.closes, components),
          ARRAY(d->interval.touched, components), ARRAY(d->interval.incomplete, components),
          ARRAY(d->interval.earliest, components), ARRAY(d->interval.kept, components),
-         ARRAY_IF(d->config.rules.where_it_pays, d->interval.kept_by_lanes, components * lanes),
+         ARRAY_IF(d->config.rules.where_it_pays, d->interval.kept_by_workers, components * workers),
          ARRAY(d->results.guarantees, components), ARRAY(d->reached_scalars, d->mesh->object_count),
-         ARRAY(d->interval.contacts_seen, lanes), ARRAY(d->config.never_culled, components)}};
+         ARRAY(d->interval.contacts_seen, workers), ARRAY(d->config.never_culled, components)}};
 }
 
 void detector_choose_regions(cscd_detector *d) {
@@ -126,7 +126,7 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->known.starts);
     d->known.starts.adapts = d->config.rules.where_it_pays;
     if (status == CSCD_OK)
-        status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->known.check);
+        status = static_check_create(d->mesh, d->space.traversal.worker_count, &d->known.check);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->known.before);
     if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->known.collapsed);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))

@@ -64,7 +64,7 @@ void detector_take_options(cscd_detector *d, const cscd_detector *from);
 /* Lets debug builds check the detector, which is whole, at every call. */
 void detector_list(cscd_detector *d);
 
-/* Its own arrays, whose sizes follow from the mesh and the number of lanes. */
+/* Its own arrays, whose sizes follow from the mesh and the number of workers. */
 array_list detector_arrays(cscd_detector *d);
 
 /* Says which regions the trees are of. */

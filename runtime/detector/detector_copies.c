@@ -74,7 +74,7 @@ static cscd_status move_orphans(const detector_move *m) {
 static cscd_status move_space(const detector_move *m) {
     search_space *to = &m->to->space;
     *to = (search_space){.context = m->to->context, .mesh = m->to->mesh};
-    to->traversal.lane_count = m->from->space.traversal.lane_count;
+    to->traversal.worker_count = m->from->space.traversal.worker_count;
     to->skipped = context_allocate(to->context, to->mesh->component_count, sizeof *to->skipped);
     if (to->skipped == NULL) return CSCD_OUT_OF_MEMORY;
     cscd_status status =
@@ -127,7 +127,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK)
         status = start_states_move(&from->known.starts, d->mesh, m->change, &d->known.starts);
     if (status == CSCD_OK)
-        status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->known.check);
+        status = static_check_create(d->mesh, d->space.traversal.worker_count, &d->known.check);
     if (status == CSCD_OK) status = detector_create_baseline(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->known.before);
     if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->known.collapsed);
@@ -162,7 +162,7 @@ static void exchange_space(search_space *a, search_space *b) {
     EXCHANGE(skipped);
 }
 
-/* Lists and lanes stay where they are. */
+/* Lists and workers stay where they are. */
 static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     exchange_space(&a->space, &b->space);
     EXCHANGE(seen);
@@ -185,7 +185,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(interval.touched);
     EXCHANGE(interval.earliest);
     EXCHANGE(interval.kept);
-    EXCHANGE(interval.kept_by_lanes);
+    EXCHANGE(interval.kept_by_workers);
     EXCHANGE(interval.incomplete);
     EXCHANGE(interval.contacts_seen);
     EXCHANGE(results.guarantees);
@@ -263,15 +263,15 @@ static cscd_status clone_starts(const start_states *s, const cscd_mesh *mesh, st
     return CSCD_OK;
 }
 
-/* Lanes are as many as the context has threads, and hold nothing between calls. */
+/* Workers are as many as the context has threads, and hold nothing between calls. */
 static cscd_status clone_space(const search_space *from, const cscd_mesh *mesh, search_space *to) {
     cscd_context *context = mesh->context;
     *to = (search_space){.context = context, .mesh = mesh, .moves_from = from->moves_from};
     cscd_status status = traversal_create(context, &to->traversal);
     if (status != CSCD_OK) return status;
-    to->lanes = context_allocate(context, to->traversal.lane_count, sizeof *to->lanes);
+    to->workers = context_allocate(context, to->traversal.worker_count, sizeof *to->workers);
     to->skipped = context_allocate(context, mesh->component_count, sizeof *to->skipped);
-    if (to->lanes == NULL || to->skipped == NULL) return CSCD_OUT_OF_MEMORY;
+    if (to->workers == NULL || to->skipped == NULL) return CSCD_OUT_OF_MEMORY;
     status = representatives_copy(&from->representatives, mesh, &to->representatives);
     if (status == CSCD_OK) status = loose_elements_create(mesh, &to->loose);
     if (status == CSCD_OK) status = active_set_copy(&from->active, mesh, &to->active);
@@ -328,7 +328,8 @@ static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     if (status == CSCD_OK) status = clone_culling(&from->interval.culling, mesh, &d->interval.culling);
     if (status == CSCD_OK) status = clone_trees(&from->rebuild, d);
     if (status == CSCD_OK) status = clone_starts(&from->known.starts, mesh, &d->known.starts);
-    if (status == CSCD_OK) status = static_check_create(mesh, d->space.traversal.lane_count, &d->known.check);
+    if (status == CSCD_OK)
+        status = static_check_create(mesh, d->space.traversal.worker_count, &d->known.check);
     if (status == CSCD_OK) status = detector_create_baseline(d);
     if (status == CSCD_OK) status = rollback_create(mesh, &d->known.before);
     if (status == CSCD_OK) status = clone_collapsed(&from->known.collapsed, mesh, &d->known.collapsed);

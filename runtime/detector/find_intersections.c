@@ -57,7 +57,7 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
-/* The most bytes that a pair takes: in the lane that finds it, and in the list, where it is sorted. */
+/* The most bytes that a pair takes: in the worker that finds it, and in the list, where it is sorted. */
 enum { PAIR_SIZE = 64 };
 
 static size_t most_memory(const cscd_detector *d, const cscd_intersection_options *options) {
@@ -94,7 +94,7 @@ typedef struct kind_search {
     size_t longest;             /* the most pairs that the list may have */
     exclusions without_host;    /* what is left out but by the caller's function, for any thread */
     size_t of_kind[KIND_COUNT]; /* pairs that count */
-    bool keeps;                 /* these pairs stay in the lanes */
+    bool keeps;                 /* these pairs stay in the workers */
     left_out_pairs *left_out;   /* gets those that are left out; NULL: nobody asks */
 } kind_search;
 
@@ -116,21 +116,21 @@ static size_t count_found(const kind_search *s) {
 
 /* ---- all pairs ----------------------------------------------------------------------------------------- */
 
-/* Counts the pairs of a lane that are not settled yet, and drops what does not count. */
-static void settle_lane(kind_search *s, intersection_lane *lane) {
-    size_t kept = lane->settled;
-    for (size_t i = lane->settled; i < lane->count; i++) {
-        pair_note note = lane->notes[i];
-        found_pair pair = lane->items[i];
+/* Counts the pairs of a worker that are not settled yet, and drops what does not count. */
+static void settle_worker(kind_search *s, intersection_worker *worker) {
+    size_t kept = worker->settled;
+    for (size_t i = worker->settled; i < worker->count; i++) {
+        pair_note note = worker->notes[i];
+        found_pair pair = worker->items[i];
         if (!is_wanted(s, note)) continue;
         if (is_left_out(s, &s->detector->config.exclusions, pair, note)) {
             if (s->left_out != NULL) left_out_pairs_add(s->left_out, pair.a, pair.b);
             continue;
         }
         s->of_kind[note.kind]++;
-        if (s->keeps) intersection_lane_move(lane, i, kept++);
+        if (s->keeps) intersection_worker_move(worker, i, kept++);
     }
-    lane->settled = lane->count = kept;
+    worker->settled = worker->count = kept;
 }
 
 static bool list_too_long(const kind_search *s) {
@@ -138,21 +138,22 @@ static bool list_too_long(const kind_search *s) {
 }
 
 /* Called between two rounds, on the calling thread. Once the list is too long, no pair is kept. */
-static void settle_lanes(void *data) {
+static void settle_workers(void *data) {
     kind_search *s = data;
     static_check *check = &s->detector->known.check;
-    for (uint32_t i = 0; i < check->lane_count; i++) settle_lane(s, &check->lanes[i]);
+    for (uint32_t i = 0; i < check->worker_count; i++) settle_worker(s, &check->workers[i]);
     if (!list_too_long(s)) return;
-    for (uint32_t i = 0; i < check->lane_count; i++) check->lanes[i].settled = check->lanes[i].count = 0;
+    for (uint32_t i = 0; i < check->worker_count; i++)
+        check->workers[i].settled = check->workers[i].count = 0;
 }
 
 static cscd_status find_all(kind_search *s) {
     cscd_detector *d = s->detector;
-    list_cap_begin_pairs(&d->interval.cap, &d->known.check, s->keeps ? s->longest : 0, settle_lanes, s);
+    list_cap_begin_pairs(&d->interval.cap, &d->known.check, s->keeps ? s->longest : 0, settle_workers, s);
     cscd_status status = static_check_kinds(&d->known.check, &d->space.traversal, &d->space.bvh, s->positions,
                                             d->config.exclusions.names);
     list_cap_end_pairs(&d->known.check);
-    if (status == CSCD_OK) settle_lanes(s);
+    if (status == CSCD_OK) settle_workers(s);
     return status;
 }
 
@@ -182,9 +183,9 @@ static cscd_status find_first(kind_search *s) {
     s->without_host.ignore = NULL;
     cscd_status status = first_pairs_find(&d->known.check, &d->space.traversal, &d->space.bvh, s->positions,
                                           d->config.exclusions.names, &quest);
-    for (uint32_t i = 0; status == CSCD_OK && i < d->known.check.lane_count; i++) {
-        const intersection_lane *lane = &d->known.check.lanes[i];
-        for (size_t j = 0; j < lane->count; j++) s->of_kind[lane->notes[j].kind]++;
+    for (uint32_t i = 0; status == CSCD_OK && i < d->known.check.worker_count; i++) {
+        const intersection_worker *worker = &d->known.check.workers[i];
+        for (size_t j = 0; j < worker->count; j++) s->of_kind[worker->notes[j].kind]++;
     }
     return status;
 }
@@ -228,18 +229,19 @@ static cscd_status reserve_pairs(cscd_detector *d, size_t count) {
     return CSCD_OK;
 }
 
-/* Joins the lists of all lanes, and sorts them. The keys and those to spare lie where the list will be, each half as long as
+/* Joins the lists of all workers, and sorts them. The keys and those to spare lie where the list will be, each half as long as
  * an item; the last items are described first, so that no key is written over before its turn. */
 static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersections *out) {
     cscd_status status = reserve_pairs(d, count);
     if (status != CSCD_OK) return status;
     pair_key *keys = d->results.intersections.items;
     size_t next = 0;
-    for (uint32_t i = 0; i < d->known.check.lane_count; i++) {
-        const intersection_lane *lane = &d->known.check.lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            found_pair p = lane->items[j];
-            keys[next++] = (pair_key){(uint64_t)p.a << 32 | p.b, lane->notes[j].kind, lane->notes[j].shared};
+    for (uint32_t i = 0; i < d->known.check.worker_count; i++) {
+        const intersection_worker *worker = &d->known.check.workers[i];
+        for (size_t j = 0; j < worker->count; j++) {
+            found_pair p = worker->items[j];
+            keys[next++] =
+                (pair_key){(uint64_t)p.a << 32 | p.b, worker->notes[j].kind, worker->notes[j].shared};
         }
     }
     sort_by_number(keys, keys + count, count, sizeof *keys);
@@ -254,10 +256,10 @@ static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersections
 
 static void count_zero_area(const static_check *check, cscd_intersections *out) {
     out->first_zero_area = UINT32_MAX;
-    for (uint32_t i = 0; i < check->lane_count; i++) {
-        const intersection_lane *lane = &check->lanes[i];
-        out->zero_area_triangles += lane->zero_area_triangles;
-        if (lane->first_zero_area < out->first_zero_area) out->first_zero_area = lane->first_zero_area;
+    for (uint32_t i = 0; i < check->worker_count; i++) {
+        const intersection_worker *worker = &check->workers[i];
+        out->zero_area_triangles += worker->zero_area_triangles;
+        if (worker->first_zero_area < out->first_zero_area) out->first_zero_area = worker->first_zero_area;
     }
 }
 

@@ -11,23 +11,23 @@ enum { INTERVALS_BETWEEN_COUNTS = 4 };
 
 void interval_begin_counting(detector_interval *iv, const culling_rules *rules, start_states *starts,
                              bool proves) {
-    size_t components = iv->space->mesh->component_count, lanes = iv->space->traversal.lane_count;
+    size_t components = iv->space->mesh->component_count, workers = iv->space->traversal.worker_count;
     memset(iv->touched, 0, components * sizeof *iv->touched);
     iv->passes = 0;
     if (!rules->where_it_pays) return;
     culling_choice_decide(starts, proves);
     iv->counts_kept = iv->intervals % INTERVALS_BETWEEN_COUNTS == 0 || culling_choice_begins(starts);
-    for (size_t i = 0; i < lanes; i++)
-        iv->space->lanes[i].kept = iv->counts_kept ? iv->kept_by_lanes + i * components : NULL;
-    if (iv->counts_kept) memset(iv->kept_by_lanes, 0, lanes * components * sizeof *iv->kept_by_lanes);
+    for (size_t i = 0; i < workers; i++)
+        iv->space->workers[i].kept = iv->counts_kept ? iv->kept_by_workers + i * components : NULL;
+    if (iv->counts_kept) memset(iv->kept_by_workers, 0, workers * components * sizeof *iv->kept_by_workers);
 }
 
 void interval_learn(detector_interval *iv, const culling_rules *rules, start_states *starts) {
-    size_t components = iv->space->mesh->component_count, lanes = iv->space->traversal.lane_count;
+    size_t components = iv->space->mesh->component_count, workers = iv->space->traversal.worker_count;
     if (!rules->where_it_pays) return;
     memset(iv->kept, 0, components * sizeof *iv->kept);
-    for (size_t i = 0; iv->counts_kept && i < lanes; i++) {
-        const uint32_t *kept = iv->kept_by_lanes + i * components;
+    for (size_t i = 0; iv->counts_kept && i < workers; i++) {
+        const uint32_t *kept = iv->kept_by_workers + i * components;
         for (size_t c = 0; c < components; c++) iv->kept[c] += kept[c];
     }
     const culling_outcome outcome = {iv->culled, iv->counts_kept ? iv->kept : NULL, iv->touched,
@@ -51,10 +51,10 @@ void earliest_begin(detector_interval *iv) {
 }
 
 void earliest_note(detector_interval *iv) {
-    for (uint32_t i = 0; i < iv->space->traversal.lane_count; i++) {
-        const contact_lane *lane = &iv->space->lanes[i];
-        for (size_t j = iv->contacts_seen[i]; j < lane->count; j++)
-            tainting_note(iv->space->mesh, contact_lane_at(lane, j), iv->earliest);
+    for (uint32_t i = 0; i < iv->space->traversal.worker_count; i++) {
+        const contact_worker *worker = &iv->space->workers[i];
+        for (size_t j = iv->contacts_seen[i]; j < worker->count; j++)
+            tainting_note(iv->space->mesh, contact_worker_at(worker, j), iv->earliest);
     }
 }
 
@@ -64,25 +64,25 @@ static bool is_later(const detector_interval *iv, const cscd_contact *contact, d
 }
 
 /* Contacts stay in order, so those that were seen are still the first ones. */
-static void drop_from_lane(detector_interval *iv, uint32_t index, double within) {
-    contact_lane *lane = &iv->space->lanes[index];
+static void drop_from_worker(detector_interval *iv, uint32_t index, double within) {
+    contact_worker *worker = &iv->space->workers[index];
     size_t kept = 0, seen = 0;
-    for (size_t i = 0; i < lane->count; i++) {
-        if (is_later(iv, contact_lane_at(lane, i), within)) continue;
+    for (size_t i = 0; i < worker->count; i++) {
+        if (is_later(iv, contact_worker_at(worker, i), within)) continue;
         seen += i < iv->contacts_seen[index];
-        *contact_lane_at(lane, kept++) = *contact_lane_at(lane, i);
+        *contact_worker_at(worker, kept++) = *contact_worker_at(worker, i);
     }
-    lane->count = kept;
+    worker->count = kept;
     iv->contacts_seen[index] = seen;
 }
 
 void earliest_drop_later(detector_interval *iv, double within) {
-    for (uint32_t i = 0; i < iv->space->traversal.lane_count; i++) drop_from_lane(iv, i, within);
+    for (uint32_t i = 0; i < iv->space->traversal.worker_count; i++) drop_from_worker(iv, i, within);
 }
 
 /* ---- the limit of a list ------------------------------------------------------------------------------- */
 
-/* The room of a lane besides its share of the limit, so that lanes are seldom suspended. */
+/* The room of a worker besides its share of the limit, so that workers are seldom suspended. */
 enum { CONTACTS_BESIDE = 2048 };
 
 cscd_status list_cap_set(cscd_context *context, const cscd_mesh *mesh, list_cap *cap, size_t longest) {
@@ -102,47 +102,47 @@ cscd_status list_cap_fail(cscd_context *context, const list_cap *cap, size_t cou
                         count, cap->longest);
 }
 
-/* The number of contacts that a lane has room for before it is suspended. */
-static size_t room_of_lane(const detector_interval *iv) {
-    return iv->cap.longest / iv->space->traversal.lane_count + iv->cap.beside;
+/* The number of contacts that a worker has room for before it is suspended. */
+static size_t room_of_worker(const detector_interval *iv) {
+    return iv->cap.longest / iv->space->traversal.worker_count + iv->cap.beside;
 }
 
 /* Drops what is left out, then says that the rest is in the list. */
-static void settle_lane(detector_interval *iv, contact_lane *lane) {
+static void settle_worker(detector_interval *iv, contact_worker *worker) {
     const exclusions *e = iv->exclusions;
     bool left_out_alone = iv->cap.taint == CAP_TAINTS_LEFT_OUT;
-    size_t kept = lane->settled;
-    for (size_t i = lane->settled; i < lane->count; i++) {
-        const cscd_contact *c = contact_lane_at(lane, i);
+    size_t kept = worker->settled;
+    for (size_t i = worker->settled; i < worker->count; i++) {
+        const cscd_contact *c = contact_worker_at(worker, i);
         bool left_out = exclusions_cover(e, c->kind, c->a, c->b, NULL);
         if (left_out || !left_out_alone) tainting_mark(iv->space->mesh, c, iv->cap.tainted, iv->touched);
-        if (!left_out) *contact_lane_at(lane, kept++) = *c;
+        if (!left_out) *contact_worker_at(worker, kept++) = *c;
     }
-    lane->settled = lane->count = kept;
+    worker->settled = worker->count = kept;
 }
 
-static void empty_lanes(detector_interval *iv) {
-    for (uint32_t i = 0; i < iv->space->traversal.lane_count; i++)
-        iv->space->lanes[i].settled = iv->space->lanes[i].count = 0;
+static void empty_workers(detector_interval *iv) {
+    for (uint32_t i = 0; i < iv->space->traversal.worker_count; i++)
+        iv->space->workers[i].settled = iv->space->workers[i].count = 0;
 }
 
-/* Called between two runs of the lanes, on the calling thread. Once the list is too long, no contact is kept. */
-static void spill_lanes(void *data) {
+/* Called between two runs of the workers, on the calling thread. Once the list is too long, no contact is kept. */
+static void spill_workers(void *data) {
     detector_interval *iv = data;
     search_space *s = iv->space;
     size_t count = s->counted;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        contact_lane *lane = &s->lanes[i];
-        settle_lane(iv, lane);
-        count += lane->settled;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        contact_worker *worker = &s->workers[i];
+        settle_worker(iv, worker);
+        count += worker->settled;
     }
     if (count > s->longest) {
         s->counted = count;
-        empty_lanes(iv);
+        empty_workers(iv);
     }
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        s->lanes[i].limit = s->lanes[i].settled + room_of_lane(iv);
-        iv->contacts_seen[i] = s->lanes[i].settled;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        s->workers[i].limit = s->workers[i].settled + room_of_worker(iv);
+        iv->contacts_seen[i] = s->workers[i].settled;
     }
     iv->cap.any_tainted = true;
 }
@@ -153,8 +153,8 @@ static void spill_later(void *data) {
     detector_interval *iv = data;
     earliest_note(iv);
     earliest_drop_later(iv, earliest_tainting);
-    for (uint32_t i = 0; i < iv->space->traversal.lane_count; i++)
-        iv->space->lanes[i].limit = iv->space->lanes[i].count + room_of_lane(iv);
+    for (uint32_t i = 0; i < iv->space->traversal.worker_count; i++)
+        iv->space->workers[i].limit = iv->space->workers[i].count + room_of_worker(iv);
 }
 
 void list_cap_begin(detector_interval *iv, interval_search *search, cap_taint taint) {
@@ -163,10 +163,10 @@ void list_cap_begin(detector_interval *iv, interval_search *search, cap_taint ta
     iv->cap.taint = taint;
     iv->cap.any_tainted = false;
     memset(iv->cap.tainted, false, iv->space->mesh->triangle_count * sizeof *iv->cap.tainted);
-    search->spill = taint == CAP_KEEPS_EARLIEST ? spill_later : spill_lanes;
+    search->spill = taint == CAP_KEEPS_EARLIEST ? spill_later : spill_workers;
     search->spill_data = iv;
-    for (uint32_t i = 0; i < iv->space->traversal.lane_count; i++)
-        iv->space->lanes[i].limit = room_of_lane(iv);
+    for (uint32_t i = 0; i < iv->space->traversal.worker_count; i++)
+        iv->space->workers[i].limit = room_of_worker(iv);
 }
 
 uint32_t list_cap_taint(detector_interval *iv, const tainting *t) {
@@ -183,7 +183,7 @@ uint32_t list_cap_taint(detector_interval *iv, const tainting *t) {
 
 void list_cap_begin_pairs(const list_cap *cap, static_check *check, size_t longest, void (*spill)(void *data),
                           void *data) {
-    check->limit = longest / check->lane_count + cap->beside;
+    check->limit = longest / check->worker_count + cap->beside;
     check->spill = spill;
     check->spill_data = data;
 }

@@ -5,18 +5,18 @@
 #include "runtime/detector/search.h"
 #include "runtime/intersections/intersections.h"
 
-/* The contacts that taint triangles when they leave the lanes: all of them, or, in a search of a moment, those that are left
+/* The contacts that taint triangles when they leave the workers: all of them, or, in a search of a moment, those that are left
  * out and may touch on the way of a motion that begins there. Where only the earliest contacts are listed, those leave the
- * lanes that neither taint nor are listed. */
+ * workers that neither taint nor are listed. */
 typedef enum cap_taint { CAP_TAINTS_ALL, CAP_TAINTS_LEFT_OUT, CAP_KEEPS_EARLIEST } cap_taint;
 
 /* A limit on the length of lists: contacts that find no room are counted, and leave nothing behind but taint. */
 typedef struct list_cap {
     size_t longest; /* of the options; 0: there is no limit */
-    bool *tainted;  /* per triangle: by contacts that have left the lanes; NULL: there never was a limit */
+    bool *tainted;  /* per triangle: by contacts that have left the workers; NULL: there never was a limit */
     bool any_tainted;
-    size_t beside;   /* the room of a lane besides its share of the limit */
-    cap_taint taint; /* which contacts that leave the lanes taint, in this search */
+    size_t beside;   /* the room of a worker besides its share of the limit */
+    cap_taint taint; /* which contacts that leave the workers taint, in this search */
 } list_cap;
 
 typedef struct detector_interval {
@@ -34,14 +34,14 @@ typedef struct detector_interval {
     uint32_t *touched; /* the number of contacts that it has with itself */
     bool *incomplete;  /* some of its contacts may be missing */
     uint32_t *kept; /* pairs of its triangles that were not culled, where that decides (culling_choice.c) */
-    uint32_t *kept_by_lanes; /* the same for each lane in turn */
+    uint32_t *kept_by_workers; /* the same for each worker in turn */
     double *earliest; /* the least toi of its contacts with itself, where only the earliest are wanted */
 
     uint32_t intervals; /* that the vertices have gone through */
     bool counts_kept;   /* pairs are counted in this one */
     bool lists_earliest;
     uint64_t passes;       /* its closing passes */
-    size_t *contacts_seen; /* per lane: its first contacts that have been looked at for tainted triangles */
+    size_t *contacts_seen; /* per worker: its first contacts that have been looked at for tainted triangles */
 } detector_interval;
 
 /* ---- what culling learns ------------------------------------------------------------------------------- */
@@ -70,10 +70,10 @@ static const double earliest_tainting = 2e-9;
 /* Begins an interval: no contact is noted. */
 void earliest_begin(detector_interval *iv);
 
-/* Notes the contacts that the lanes have gained since contacts_seen. */
+/* Notes the contacts that the workers have gained since contacts_seen. */
 void earliest_note(detector_interval *iv);
 
-/* Takes the contacts of components with themselves out of the lanes whose toi exceeds the earliest one by more than
+/* Takes the contacts of components with themselves out of the workers whose toi exceeds the earliest one by more than
  * `within`. The earliest have been noted. */
 void earliest_drop_later(detector_interval *iv, double within);
 
@@ -88,11 +88,11 @@ cscd_status list_cap_fail(cscd_context *context, const list_cap *cap, size_t cou
 /* Lets the search that has just begun keep no more contacts than the limit allows. */
 void list_cap_begin(detector_interval *iv, interval_search *search, cap_taint taint);
 
-/* Taints by the contacts that have left the lanes since the last call. Returns how many triangles are newly kept. */
+/* Taints by the contacts that have left the workers since the last call. Returns how many triangles are newly kept. */
 uint32_t list_cap_taint(detector_interval *iv, const tainting *t);
 
-/* Lets static checks keep no more pairs in their lanes than the longest list allows, until list_cap_end_pairs; 0: no list
- * is made of them, so lanes need room for few. spill takes pairs from the lanes as they fill; NULL drops them, since their
+/* Lets static checks keep no more pairs in their workers than the longest list allows, until list_cap_end_pairs; 0: no list
+ * is made of them, so workers need room for few. spill takes pairs from the workers as they fill; NULL drops them, since their
  * triangles are marked. */
 void list_cap_begin_pairs(const list_cap *cap, static_check *check, size_t longest, void (*spill)(void *data),
                           void *data);

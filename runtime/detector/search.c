@@ -1,4 +1,4 @@
-/* The searches of a detector: their data; one interval, from the trees, refitted to it, to the lanes' contacts; candidates,
+/* The searches of a detector: their data; one interval, from the trees, refitted to it, to the workers' contacts; candidates,
  * which serve every shorter motion. */
 #include "runtime/detector/search.h"
 
@@ -14,9 +14,9 @@ cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
     if (status == CSCD_OK) status = representatives_create(mesh, &s.representatives);
     if (status == CSCD_OK) status = loose_elements_create(mesh, &s.loose);
     if (status == CSCD_OK) {
-        s.lanes = context_allocate(s.context, s.traversal.lane_count, sizeof *s.lanes);
+        s.workers = context_allocate(s.context, s.traversal.worker_count, sizeof *s.workers);
         s.skipped = context_allocate(s.context, mesh->component_count, sizeof *s.skipped);
-        if (s.lanes == NULL || s.skipped == NULL) status = CSCD_OUT_OF_MEMORY;
+        if (s.workers == NULL || s.skipped == NULL) status = CSCD_OUT_OF_MEMORY;
     }
     if (status != CSCD_OK) {
         search_space_destroy(&s);
@@ -26,19 +26,19 @@ cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
     return CSCD_OK;
 }
 
-static void free_lanes(search_space *s) {
-    for (uint32_t i = 0; s->lanes != NULL && i < s->traversal.lane_count; i++) {
-        contact_lane_free(s->context, &s->lanes[i]);
-        context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_VF].pairs);
-        context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_EE].pairs);
+static void free_workers(search_space *s) {
+    for (uint32_t i = 0; s->workers != NULL && i < s->traversal.worker_count; i++) {
+        contact_worker_free(s->context, &s->workers[i]);
+        context_free(s->context, s->workers[i].candidates[CSCD_CONTACT_VF].pairs);
+        context_free(s->context, s->workers[i].candidates[CSCD_CONTACT_EE].pairs);
     }
-    context_free(s->context, s->lanes);
+    context_free(s->context, s->workers);
 }
 
 void search_space_destroy(search_space *s) {
     if (s->context == NULL) return;
-    free_lanes(s);
-    if (s->traversal.lanes != NULL) traversal_destroy(&s->traversal);
+    free_workers(s);
+    if (s->traversal.workers != NULL) traversal_destroy(&s->traversal);
     bvh_free(&s->bvh);
     active_set_free(s->context, &s->active);
     representatives_free(s->context, &s->representatives);
@@ -49,15 +49,15 @@ void search_space_destroy(search_space *s) {
 }
 
 cscd_status search_space_status(const search_space *s) {
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        if (s->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        if (s->workers[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
     }
     return CSCD_OK;
 }
 
 bool search_space_found_any(const search_space *s) {
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        if (s->lanes[i].count > 0) return true;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        if (s->workers[i].count > 0) return true;
     }
     return false;
 }
@@ -66,7 +66,7 @@ bool search_space_found_any(const search_space *s) {
 
 interval_search interval_search_begin(search_space *space, const double *x0, const double *x1,
                                       separation limit) {
-    for (uint32_t i = 0; i < space->traversal.lane_count; i++) contact_lane_reset(&space->lanes[i]);
+    for (uint32_t i = 0; i < space->traversal.worker_count; i++) contact_worker_reset(&space->workers[i]);
     space->longest = 0;
     space->counted = 0;
     return (interval_search){
@@ -83,70 +83,70 @@ interval_search interval_search_begin(search_space *space, const double *x0, con
 }
 
 static bool any_suspended(const search_space *s) {
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        if (s->lanes[i].suspended) return true;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        if (s->workers[i].suspended) return true;
     }
     return false;
 }
 
-void interval_search_run(interval_search *search, uint32_t lanes, parallel_task *task, void *data) {
+void interval_search_run(interval_search *search, uint32_t workers, parallel_task *task, void *data) {
     search_space *s = search->space;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        s->lanes[i].cursor = 0;
-        s->lanes[i].suspended = false;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        s->workers[i].cursor = 0;
+        s->workers[i].suspended = false;
     }
     for (;;) {
-        parallel_run(s->context->threads, lanes, task, data);
+        parallel_run(s->context->threads, workers, task, data);
         if (!any_suspended(s)) return;
         search->spill(search->spill_data);
     }
 }
 
-/* A lane with a limit looks at it after this many pairs, which narrow_phase_test takes at once. */
+/* A worker with a limit looks at it after this many pairs, which narrow_phase_test takes at once. */
 enum { PAIRS_BETWEEN_LOOKS = 256 };
 
-/* Tests the rest of the batch. False: the lane is suspended before its end. */
-static bool test_found(const interval_search *search, const traversal_lane *batch, contact_lane *lane) {
-    const uint32_t most = lane->limit == SIZE_MAX ? TRAVERSAL_BATCH_SIZE : PAIRS_BETWEEN_LOOKS;
-    while (lane->cursor < batch->pair_count) {
-        uint32_t begin = (uint32_t)lane->cursor, rest = batch->pair_count - begin;
+/* Tests the rest of the batch. False: the worker is suspended before its end. */
+static bool test_found(const interval_search *search, const traversal_worker *batch, contact_worker *worker) {
+    const uint32_t most = worker->limit == SIZE_MAX ? TRAVERSAL_BATCH_SIZE : PAIRS_BETWEEN_LOOKS;
+    while (worker->cursor < batch->pair_count) {
+        uint32_t begin = (uint32_t)worker->cursor, rest = batch->pair_count - begin;
         uint32_t count = rest < most ? rest : most;
-        narrow_phase_test(&search->interval, batch->pairs + begin, count, lane);
-        if (contact_lane_suspend(lane, begin + count)) return false;
+        narrow_phase_test(&search->interval, batch->pairs + begin, count, worker);
+        if (contact_worker_suspend(worker, begin + count)) return false;
     }
     return true;
 }
 
-/* Each lane searches and tests in turn. It tests what it has found itself, so no lane waits for another one. */
+/* Each worker searches and tests in turn. It tests what it has found itself, so no worker waits for another one. */
 static void search_and_test(void *data, uint32_t index) {
     interval_search *search = data;
     cscd_context *context = search->space->context;
     traversal *t = &search->space->traversal;
-    traversal_lane *batch = &t->lanes[index];
-    contact_lane *lane = &search->space->lanes[index];
+    traversal_worker *batch = &t->workers[index];
+    contact_worker *worker = &search->space->workers[index];
     double begin = timer_now_ms(), spent = 0.0, searched = batch->search_ms;
-    lane->suspended = false;
-    bool done = test_found(search, batch, lane);
-    while (done && !lane->out_of_memory && progress_go_on(&context->progress, traversal_done(t)) &&
+    worker->suspended = false;
+    bool done = test_found(search, batch, worker);
+    while (done && !worker->out_of_memory && progress_go_on(&context->progress, traversal_done(t)) &&
            traversal_fill(t, index)) {
         batch->pairs_found += batch->pair_count;
-        lane->cursor = 0;
-        done = test_found(search, batch, lane);
+        worker->cursor = 0;
+        done = test_found(search, batch, worker);
     }
-    if (done) narrow_phase_finish(&search->interval, lane);
+    if (done) narrow_phase_finish(&search->interval, worker);
     timer_lap(&begin, &spent);
     batch->consume_ms += spent - (batch->search_ms - searched);
 }
 
-/* Divides the time that the lanes took together between the two stages, in the proportion of the lanes' own times. */
+/* Divides the time that the workers took together between the two stages, in the proportion of the workers' own times. */
 static void divide_time(interval_search *search, double together_ms) {
     const traversal *t = &search->space->traversal;
     double searched = 0.0, tested = 0.0;
-    for (uint32_t i = 0; i < t->busy_lanes; i++) {
-        searched += t->lanes[i].search_ms;
-        tested += t->lanes[i].consume_ms;
-        search->counters.pcp += t->lanes[i].pairs_found + t->lanes[i].adjacent;
-        search->counters.adjacent += t->lanes[i].adjacent;
+    for (uint32_t i = 0; i < t->busy_workers; i++) {
+        searched += t->workers[i].search_ms;
+        tested += t->workers[i].consume_ms;
+        search->counters.pcp += t->workers[i].pairs_found + t->workers[i].adjacent;
+        search->counters.adjacent += t->workers[i].adjacent;
     }
     double share = searched + tested > 0.0 ? searched / (searched + tested) : 0.0;
     search->timings.traversal_ms += share * together_ms;
@@ -162,7 +162,7 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
                    last ? 1.0 : 0.9);
     traversal_begin(&space->traversal, &space->bvh, pass);
     timer_lap(&since, &search->timings.traversal_ms);
-    interval_search_run(search, space->traversal.busy_lanes, search_and_test, search);
+    interval_search_run(search, space->traversal.busy_workers, search_and_test, search);
     timer_lap(&since, &together);
     divide_time(search, together);
     search->counters.boxes_tested += traversal_boxes_tested(&space->traversal);
@@ -176,11 +176,11 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
 static void test_orphan_pairs(void *data, uint32_t index) {
     interval_search *search = data;
     search_space *space = search->space;
-    contact_lane *lane = &space->lanes[index];
-    lane->suspended = false;
-    narrow_phase_test_orphan_pairs(&search->interval, &space->orphans, index, space->traversal.busy_lanes,
-                                   lane);
-    if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
+    contact_worker *worker = &space->workers[index];
+    worker->suspended = false;
+    narrow_phase_test_orphan_pairs(&search->interval, &space->orphans, index, space->traversal.busy_workers,
+                                   worker);
+    if (!worker->suspended) narrow_phase_finish(&search->interval, worker);
 }
 
 /* Skips pairs of adjacent triangles everywhere except in culled components (NULL: there are none), or
@@ -216,7 +216,7 @@ cscd_status interval_search_everything(interval_search *search) {
     if (status == CSCD_OK) status = interval_search_traverse(search, TRAVERSAL_KEPT);
     if (status != CSCD_OK || !search->interval.skip_adjacent) return status;
     double since = timer_now_ms();
-    interval_search_run(search, space->traversal.busy_lanes, test_orphan_pairs, search);
+    interval_search_run(search, space->traversal.busy_workers, test_orphan_pairs, search);
     timer_lap(&since, &search->timings.contact_ms);
     return search_space_status(space);
 }
@@ -226,24 +226,24 @@ cscd_status interval_search_everything(interval_search *search) {
 static void test_loose_elements(void *data, uint32_t index) {
     interval_search *search = data;
     const search_space *space = search->space;
-    contact_lane *lane = &space->lanes[index];
-    const loose_search loose = {&search->interval, &space->loose, space->traversal.lane_count};
-    lane->suspended = false;
-    loose_search_test(&loose, index, lane);
-    if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
+    contact_worker *worker = &space->workers[index];
+    const loose_search loose = {&search->interval, &space->loose, space->traversal.worker_count};
+    worker->suspended = false;
+    loose_search_test(&loose, index, worker);
+    if (!worker->suspended) narrow_phase_finish(&search->interval, worker);
 }
 
 static void test_half_spaces(void *data, uint32_t index) {
     interval_search *search = data;
-    contact_lane *lane = &search->space->lanes[index];
-    lane->suspended = false;
-    half_spaces_test(&search->interval, index, search->space->traversal.lane_count, lane);
+    contact_worker *worker = &search->space->workers[index];
+    worker->suspended = false;
+    half_spaces_test(&search->interval, index, search->space->traversal.worker_count, worker);
 }
 
 /* Tests all vertices against the half-spaces. */
 static void search_half_spaces(interval_search *search) {
     if (search->space->mesh->loose.half_space_count > 0)
-        interval_search_run(search, search->space->traversal.lane_count, test_half_spaces, search);
+        interval_search_run(search, search->space->traversal.worker_count, test_half_spaces, search);
 }
 
 cscd_status interval_search_loose(interval_search *search) {
@@ -253,7 +253,7 @@ cscd_status interval_search_loose(interval_search *search) {
     loose_elements_move(&space->loose, &search->interval);
     timer_lap(&since, &search->timings.update_ms);
     progress_stage(&space->context->progress, "loose features", 0.9, 1.0);
-    interval_search_run(search, space->traversal.lane_count, test_loose_elements, search);
+    interval_search_run(search, space->traversal.worker_count, test_loose_elements, search);
     search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
@@ -264,25 +264,25 @@ cscd_status interval_search_loose(interval_search *search) {
 
 static void test_share_of_pairs(void *data, uint32_t index) {
     interval_search *search = data;
-    brute_force_test(&search->interval, index, search->space->traversal.lane_count,
-                     &search->space->lanes[index]);
+    brute_force_test(&search->interval, index, search->space->traversal.worker_count,
+                     &search->space->workers[index]);
 }
 
 static void test_all_loose_elements(void *data, uint32_t index) {
     interval_search *search = data;
     const search_space *space = search->space;
-    contact_lane *lane = &space->lanes[index];
-    const loose_search loose = {&search->interval, &space->loose, space->traversal.lane_count};
-    lane->suspended = false;
-    loose_search_test_all(&loose, index, lane);
-    if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
+    contact_worker *worker = &space->workers[index];
+    const loose_search loose = {&search->interval, &space->loose, space->traversal.worker_count};
+    worker->suspended = false;
+    loose_search_test_all(&loose, index, worker);
+    if (!worker->suspended) narrow_phase_finish(&search->interval, worker);
 }
 
 cscd_status interval_search_all_loose(interval_search *search) {
     search_space *space = search->space;
     double since = timer_now_ms();
     if (mesh_has_loose_objects(space->mesh))
-        interval_search_run(search, space->traversal.lane_count, test_all_loose_elements, search);
+        interval_search_run(search, space->traversal.worker_count, test_all_loose_elements, search);
     search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
@@ -293,17 +293,17 @@ cscd_status interval_search_by_brute_force(interval_search *search) {
     search_space *space = search->space;
     double since = timer_now_ms();
     progress_stage(&space->context->progress, "brute force", 0.0, 1.0);
-    interval_search_run(search, space->traversal.lane_count, test_share_of_pairs, search);
+    interval_search_run(search, space->traversal.worker_count, test_share_of_pairs, search);
     timer_lap(&since, &search->timings.contact_ms);
     return interval_search_all_loose(search);
 }
 
 /* ---- candidates ---------------------------------------------------------------------------------------- */
 
-/* Joins the lists of all lanes. False: no memory. */
+/* Joins the lists of all workers. False: no memory. */
 static bool join_lists(const search_space *s, cscd_contact_kind kind, candidate_list *list) {
     size_t count = 0;
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) count += s->lanes[i].candidates[kind].count;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) count += s->workers[i].candidates[kind].count;
     list->count = 0;
     if (count > list->capacity) {
         size_t capacity = count + count / 2;
@@ -312,8 +312,8 @@ static bool join_lists(const search_space *s, cscd_contact_kind kind, candidate_
         list->pairs = grown;
         list->capacity = capacity;
     }
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
-        const candidate_list *found = &s->lanes[i].candidates[kind];
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) {
+        const candidate_list *found = &s->workers[i].candidates[kind];
         if (found->count > 0)
             memcpy(list->pairs + list->count, found->pairs, found->count * sizeof *found->pairs);
         list->count += found->count;
@@ -354,57 +354,57 @@ typedef struct testing {
     interval_search *search;
 } testing;
 
-static void test_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+static void test_vf(const swept_interval *interval, const uint32_t pair[2], contact_worker *worker) {
     swept_box vertex = swept_box_of(interval, &pair[0], 1);
     swept_box face = swept_box_of(interval, interval->mesh->triangles[pair[1]], 3);
     if (!swept_boxes_within(&vertex, &face, pair_reach(interval, CSCD_CONTACT_VF, pair[0], pair[1]))) return;
-    lane->feature_pairs++;
-    narrow_phase_test_vf(interval, pair[0], pair[1], lane);
+    worker->feature_pairs++;
+    narrow_phase_test_vf(interval, pair[0], pair[1], worker);
 }
 
-static void test_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+static void test_ee(const swept_interval *interval, const uint32_t pair[2], contact_worker *worker) {
     if (!loose_edges_meet(interval, pair[0], pair[1])) return;
     swept_box a = swept_box_of(interval, interval->mesh->edges[pair[0]], 2);
     swept_box b = swept_box_of(interval, interval->mesh->edges[pair[1]], 2);
     if (!swept_boxes_within(&a, &b, pair_reach(interval, CSCD_CONTACT_EE, pair[0], pair[1]))) return;
-    lane->feature_pairs++;
-    narrow_phase_test_ee(interval, pair[0], pair[1], lane);
+    worker->feature_pairs++;
+    narrow_phase_test_ee(interval, pair[0], pair[1], worker);
 }
 
 /* The host may cancel after this many candidates. */
 enum { CANDIDATES_AT_ONCE = 1024 };
 
-/* Tests a lane's share of both lists; the cursor counts the candidates of the two. */
+/* Tests a worker's share of both lists; the cursor counts the candidates of the two. */
 static void test_share(void *data, uint32_t index) {
     const testing *t = data;
     const swept_interval *interval = &t->search->interval;
     const search_space *space = t->search->space;
-    contact_lane *lane = &space->lanes[index];
+    contact_worker *worker = &space->workers[index];
     size_t done = 0;
-    lane->suspended = false;
+    worker->suspended = false;
     for (int kind = 0; kind < 2; kind++) {
         const candidate_list *list = &t->candidates->lists[kind];
-        size_t begin = parallel_share(list->count, index, space->traversal.lane_count);
-        size_t end = parallel_share(list->count, index + 1, space->traversal.lane_count);
-        uint64_t left = lane->cursor - done;
+        size_t begin = parallel_share(list->count, index, space->traversal.worker_count);
+        size_t end = parallel_share(list->count, index + 1, space->traversal.worker_count);
+        uint64_t left = worker->cursor - done;
         size_t skipped = left < end - begin ? (size_t)left : end - begin;
-        for (size_t i = begin + skipped; i < end && !lane->out_of_memory; i++) {
+        for (size_t i = begin + skipped; i < end && !worker->out_of_memory; i++) {
             double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
             if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&space->context->progress, share))
                 return;
-            (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
-            if (contact_lane_suspend(lane, lane->cursor + 1)) return;
+            (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], worker);
+            if (contact_worker_suspend(worker, worker->cursor + 1)) return;
         }
         done += end - begin;
     }
-    narrow_phase_finish(interval, lane);
+    narrow_phase_finish(interval, worker);
 }
 
 cscd_status candidates_test(const candidates *c, interval_search *search) {
     search_space *space = search->space;
     testing t = {c, search};
     progress_stage(&space->context->progress, "candidates", 0.0, 1.0);
-    interval_search_run(search, space->traversal.lane_count, test_share, &t);
+    interval_search_run(search, space->traversal.worker_count, test_share, &t);
     search_half_spaces(search);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;

@@ -1,5 +1,5 @@
 /* The searches of a detector: the data that they work with and keep, one search of an interval from trees that are refitted
- * to it to the contacts of the lanes, and candidates, which serve every shorter motion. */
+ * to it to the contacts of the workers, and candidates, which serve every shorter motion. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -15,12 +15,12 @@ typedef struct search_space {
     traversal traversal;
     const pair_rules *rules; /* NULL: all objects are looked at */
     active_set active;       /* the trees have marks of it */
-    contact_lane *lanes;     /* one per lane of the traversal */
+    contact_worker *workers; /* one per worker of the traversal */
     size_t longest;          /* list of the present search; 0: there is no cap */
-    /* Lists of this many contacts are moved out of the lanes, which give back their memory; shorter ones are copied, so
+    /* Lists of this many contacts are moved out of the workers, which give back their memory; shorter ones are copied, so
      * that later steps take none from the allocator. */
     size_t moves_from;
-    size_t counted; /* contacts of the list that found no room in the lanes; then no list is given out */
+    size_t counted; /* contacts of the list that found no room in the workers; then no list is given out */
     representatives representatives;
     /* Made by the first search that skips adjacent triangles, unless there are too many. */
     orphan_pairs orphans;
@@ -33,10 +33,10 @@ typedef struct search_space {
 cscd_status search_space_create(const cscd_mesh *mesh, search_space *out);
 void search_space_destroy(search_space *s);
 
-/* OUT_OF_MEMORY: a lane had no room for a contact. */
+/* OUT_OF_MEMORY: a worker had no room for a contact. */
 cscd_status search_space_status(const search_space *s);
 
-/* Does any lane have a contact? */
+/* Does any worker have a contact? */
 bool search_space_found_any(const search_space *s);
 
 /* ---- the search of one interval ------------------------------------------------------------------------ */
@@ -46,14 +46,14 @@ typedef struct interval_search {
     swept_interval interval;
     cscd_timings timings;
     cscd_counters counters;
-    void (*spill)(void *data); /* makes room in lanes that are suspended; NULL: no lane has a limit */
+    void (*spill)(void *data); /* makes room in workers that are suspended; NULL: no worker has a limit */
     void *spill_data;
 } interval_search;
 
-/* Runs a task on the first lanes until none is suspended any more. Each goes on from its cursor, which is 0 at first. */
-void interval_search_run(interval_search *search, uint32_t lanes, parallel_task *task, void *data);
+/* Runs a task on the first workers until none is suspended any more. Each goes on from its cursor, which is 0 at first. */
+void interval_search_run(interval_search *search, uint32_t workers, parallel_task *task, void *data);
 
-/* Begins the search from x0 to x1, with nothing in the lanes. */
+/* Begins the search from x0 to x1, with nothing in the workers. */
 interval_search interval_search_begin(search_space *space, const double *x0, const double *x1,
                                       separation limit);
 
@@ -99,7 +99,7 @@ typedef struct candidate_quest {
 cscd_status candidates_collect(const candidate_quest *quest, const double *x0, const double *x1,
                                candidates *out);
 
-/* Takes over what the lanes have collected, in place of what there was. OUT_OF_MEMORY: what there is now is not all. */
+/* Takes over what the workers have collected, in place of what there was. OUT_OF_MEMORY: what there is now is not all. */
 cscd_status candidates_take(const search_space *s, candidates *out);
 void candidates_free(cscd_context *context, candidates *c);
 

@@ -38,7 +38,7 @@ static void begin_interval(step_work *work) {
         d->interval.culled[c] = d->interval.closes[c] = false;
     d->interval.lists_earliest = lists_earliest(work);
     earliest_begin(&d->interval);
-    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->interval.contacts_seen[i] = 0;
+    for (uint32_t i = 0; i < d->space.traversal.worker_count; i++) d->interval.contacts_seen[i] = 0;
     if (config_culls(&d->config) && d->config.options.start == CSCD_START_VOUCHED)
         start_states_vouch(&d->known.starts);
     start_states_count(&d->known.starts);
@@ -189,8 +189,8 @@ static cscd_status traverse_pairs(step_work *work) {
     return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
 }
 
-/* Taints triangles by the contacts that the lanes have gained since the last call, or by the earliest of them: what the
- * lanes have found together is the same for any number of threads, so all are noted before any taints. Returns how many
+/* Taints triangles by the contacts that the workers have gained since the last call, or by the earliest of them: what the
+ * workers have found together is the same for any number of threads, so all are noted before any taints. Returns how many
  * tainted triangles had culled pairs. */
 static uint32_t taint_by_contacts(const step_work *work) {
     cscd_detector *d = work->detector;
@@ -203,11 +203,11 @@ static uint32_t taint_by_contacts(const step_work *work) {
                         d->interval.lists_earliest ? earliest_tainting : INFINITY};
     uint32_t newly_kept = 0;
     if (d->interval.lists_earliest) earliest_note(&d->interval);
-    for (uint32_t i = 0; config_culls(&d->config) && i < d->space.traversal.lane_count; i++) {
-        const contact_lane *lane = &d->space.lanes[i];
-        for (size_t j = d->interval.contacts_seen[i]; j < lane->count; j++)
-            newly_kept += tainting_look(&t, contact_lane_at(lane, j));
-        d->interval.contacts_seen[i] = lane->count;
+    for (uint32_t i = 0; config_culls(&d->config) && i < d->space.traversal.worker_count; i++) {
+        const contact_worker *worker = &d->space.workers[i];
+        for (size_t j = d->interval.contacts_seen[i]; j < worker->count; j++)
+            newly_kept += tainting_look(&t, contact_worker_at(worker, j));
+        d->interval.contacts_seen[i] = worker->count;
     }
     if (config_culls(&d->config)) newly_kept += list_cap_taint(&d->interval, &t);
     return newly_kept;
@@ -274,16 +274,17 @@ static cscd_status refit_for_proof(step_work *work) {
     return work->unproven > 0 ? refit_trees(work) : CSCD_OK;
 }
 
-/* A method that searches by itself, with trees and tests of its own; contacts are left in the lanes. */
+/* A method that searches by itself, with trees and tests of its own; contacts are left in the workers. */
 typedef struct alone_work {
     cscd_detector *detector;
     own_interval interval;
 } alone_work;
 
-static void test_pairs_alone(void *data, uint32_t lane) {
+static void test_pairs_alone(void *data, uint32_t worker) {
     alone_work *work = data;
     cscd_detector *d = work->detector;
-    d->config.stages->search->test_pairs(d->config.baseline_state, &work->interval, &d->space.lanes[lane]);
+    d->config.stages->search->test_pairs(d->config.baseline_state, &work->interval,
+                                         &d->space.workers[worker]);
 }
 
 static cscd_status search_alone(step_work *stage) {

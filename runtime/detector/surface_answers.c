@@ -44,7 +44,7 @@ static surface_answers *make_answers(const cscd_mesh *mesh) {
 /* It is not there in the first call, nor after one in which patches did not fit. */
 static bool make_patch_finder(const search_space *space, surface_answers *a) {
     return a->patch_finder.mesh != NULL ||
-           patch_finder_create(space->mesh, space->traversal.lane_count, &a->patch_finder) == CSCD_OK;
+           patch_finder_create(space->mesh, space->traversal.worker_count, &a->patch_finder) == CSCD_OK;
 }
 
 left_out_pairs *surface_answers_begin(const search_space *space, surface_answers **answers) {

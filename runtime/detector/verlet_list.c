@@ -63,7 +63,7 @@ static cscd_status collect_pairs(verlet_list *v, const verlet_place *at, const d
     search.interval.beyond = apart;
     search.interval.culling = &at->interval->culling;
     search.interval.culled = at->interval->culled;
-    for (uint32_t i = 0; i < space->traversal.lane_count; i++) space->lanes[i].kept = NULL;
+    for (uint32_t i = 0; i < space->traversal.worker_count; i++) space->workers[i].kept = NULL;
     interval_search_skip_adjacent(&search, false);
     status = interval_search_traverse(&search, TRAVERSAL_KEPT);
     return status == CSCD_OK ? candidates_take(space, &v->pairs) : status;

@@ -55,7 +55,7 @@ static bool points_touch(const settling *s, const named_pair *pair) {
     return separation_floor_at((const double(*)[3])points, CSCD_CONTACT_EE, &ladder) == 0.0;
 }
 
-static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane) {
+static void test_at_rest(const settling *s, named_pair *pair, contact_worker *worker) {
     const swept_interval *interval = &s->search.interval;
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])interval->mesh->triangles;
     pair->marked = 0;
@@ -64,25 +64,25 @@ static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane
     if (of_points && s->touching)
         pair->marked = points_touch(s, pair);
     else if (pair->kind != CSCD_CONTACT_TT)
-        loose_search_test_pair(interval, (cscd_contact_kind)pair->kind, pair->a, pair->b, lane);
+        loose_search_test_pair(interval, (cscd_contact_kind)pair->kind, pair->a, pair->b, worker);
     else
         pair->marked = triangles_intersect(triangles[pair->a], triangles[pair->b], s->x);
 }
 
-/* A lane tests its share of the pairs, and marks those that are not apart. */
+/* A worker tests its share of the pairs, and marks those that are not apart. */
 static void mark_share(void *data, uint32_t index) {
     const settling *s = data;
     const search_space *space = s->at->space;
-    contact_lane *lane = &space->lanes[index];
-    size_t begin = parallel_share(s->set->count, index, space->traversal.lane_count);
-    size_t end = parallel_share(s->set->count, index + 1, space->traversal.lane_count);
-    for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+    contact_worker *worker = &space->workers[index];
+    size_t begin = parallel_share(s->set->count, index, space->traversal.worker_count);
+    size_t end = parallel_share(s->set->count, index + 1, space->traversal.worker_count);
+    for (size_t i = begin; i < end && !worker->out_of_memory; i++) {
         if ((i - begin) % PAIRS_PER_TASK == 0 && !progress_go_on(&space->context->progress, 0.0)) return;
-        test_at_rest(s, &s->set->items[i], lane);
+        test_at_rest(s, &s->set->items[i], worker);
     }
-    narrow_phase_finish(&s->search.interval, lane);
-    for (size_t i = 0; i < lane->count; i++) {
-        const cscd_contact *c = contact_lane_at(lane, i);
+    narrow_phase_finish(&s->search.interval, worker);
+    for (size_t i = 0; i < worker->count; i++) {
+        const cscd_contact *c = contact_worker_at(worker, i);
         named_pair_set_find(s->set, c->kind, c->a, c->b)->marked = 1;
     }
 }
@@ -90,7 +90,7 @@ static void mark_share(void *data, uint32_t index) {
 static void mark_all(settling *s) {
     progress *watched = &s->at->space->context->progress;
     progress_outer outer = progress_enter(watched, "waiting pairs");
-    parallel_run(s->at->space->context->threads, s->at->space->traversal.lane_count, mark_share, s);
+    parallel_run(s->at->space->context->threads, s->at->space->traversal.worker_count, mark_share, s);
     progress_leave(watched, outer);
 }
 
@@ -156,10 +156,10 @@ static bool should_wait(const settling *s, cscd_contact_kind kind, uint32_t a, u
 
 static cscd_status add_features(settling *s) {
     const waiting_place *at = s->at;
-    for (uint32_t i = 0; i < at->space->traversal.lane_count; i++) {
-        const contact_lane *lane = &at->space->lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            const cscd_contact *c = contact_lane_at(lane, j);
+    for (uint32_t i = 0; i < at->space->traversal.worker_count; i++) {
+        const contact_worker *worker = &at->space->workers[i];
+        for (size_t j = 0; j < worker->count; j++) {
+            const cscd_contact *c = contact_worker_at(worker, j);
             if (should_wait(s, c->kind, c->a, c->b) &&
                 !named_pair_set_add(at->space->context, s->set, c->kind, c->a, c->b))
                 return CSCD_OUT_OF_MEMORY;
@@ -170,10 +170,10 @@ static cscd_status add_features(settling *s) {
 
 static cscd_status add_triangles(settling *s) {
     const waiting_place *at = s->at;
-    for (uint32_t i = 0; i < at->check->lane_count; i++) {
-        const intersection_lane *lane = &at->check->lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            found_pair c = lane->items[j];
+    for (uint32_t i = 0; i < at->check->worker_count; i++) {
+        const intersection_worker *worker = &at->check->workers[i];
+        for (size_t j = 0; j < worker->count; j++) {
+            found_pair c = worker->items[j];
             if (should_wait(s, CSCD_CONTACT_TT, c.a, c.b) &&
                 !named_pair_set_add(at->space->context, s->set, CSCD_CONTACT_TT, c.a, c.b))
                 return CSCD_OUT_OF_MEMORY;

@@ -32,7 +32,7 @@ typedef struct star_cursor {
 } star_cursor;
 
 /* The findings of one thread. */
-typedef struct intersection_lane {
+typedef struct intersection_worker {
     _Alignas(CACHE_LINE_SIZE) found_pair *items;
     pair_note *notes; /* one for each item where kinds are asked for */
     size_t count, capacity, note_capacity;
@@ -40,12 +40,12 @@ typedef struct intersection_lane {
     star_cursor stars;
     uint32_t zero_area_triangles, first_zero_area; /* UINT32_MAX: none */
     bool out_of_memory;
-} intersection_lane;
+} intersection_worker;
 
-/* Copies a pair of a lane whose notes are kept to another place in it. */
-static inline void intersection_lane_move(intersection_lane *lane, size_t from, size_t to) {
-    lane->items[to] = lane->items[from];
-    lane->notes[to] = lane->notes[from];
+/* Copies a pair of a worker whose notes are kept to another place in it. */
+static inline void intersection_worker_move(intersection_worker *worker, size_t from, size_t to) {
+    worker->items[to] = worker->items[from];
+    worker->notes[to] = worker->notes[from];
 }
 
 /* The triangles around each vertex at one moment, and what is known of them. */
@@ -64,14 +64,14 @@ typedef struct static_check {
     const cscd_mesh *mesh;
     bool *unproven; /* per triangle: it is compared with the others */
     bool *crossing; /* per unproven triangle: it intersects another one of its component, or has no area */
-    intersection_lane
-        *lanes; /* one per lane of the traversal; they include the pairs that the caller ignores */
-    uint32_t lane_count;
+    intersection_worker
+        *workers; /* one per worker of the traversal; they include the pairs that the caller ignores */
+    uint32_t worker_count;
     vertex_stars stars;
-    bool kinds; /* the check asks for them: lanes have notes, and duplicates */
+    bool kinds; /* the check asks for them: workers have notes, and duplicates */
 
-    /* When a lane has this many pairs behind its settled ones, the triangles of all pairs are marked as crossing, and then
-     * the calling thread empties the lanes. SIZE_MAX: there is no limit. */
+    /* When a worker has this many pairs behind its settled ones, the triangles of all pairs are marked as crossing, and then
+     * the calling thread empties the workers. SIZE_MAX: there is no limit. */
     size_t limit;
     void (*spill)(void *data); /* NULL: the pairs are dropped */
     void *spill_data;
@@ -87,7 +87,7 @@ typedef struct static_check {
 } static_check;
 
 /* On failure *out holds nothing. */
-cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, static_check *out);
+cscd_status static_check_create(const cscd_mesh *mesh, uint32_t worker_count, static_check *out);
 void static_check_destroy(static_check *c);
 
 /* Compares the triangles that are marked as unproven with one another, each with those of its own component. The
@@ -112,8 +112,8 @@ typedef struct pair_quest {
     bool (*stays)(void *data, found_pair pair); /* called afterwards, on the calling thread; NULL: all stay */
 } pair_quest;
 
-/* As static_check_kinds, but ends once it has found enough pairs that count and stay. Then the lanes have these alone,
- * and of each number the same ones for any lane count: the traversal's tasks are in a fixed order, as are the pairs of a
+/* As static_check_kinds, but ends once it has found enough pairs that count and stay. Then the workers have these alone,
+ * and of each number the same ones for any worker count: the traversal's tasks are in a fixed order, as are the pairs of a
  * task. No triangle is marked. */
 cscd_status first_pairs_find(static_check *c, traversal *t, bvh *hierarchy, const double *positions,
                              const uint32_t *names, const pair_quest *quest);
@@ -270,13 +270,13 @@ typedef struct winding_tally {
 } winding_tally;
 
 /* The numbers that one thread has found. */
-typedef struct winding_lane {
+typedef struct winding_worker {
     _Alignas(CACHE_LINE_SIZE) winding_tally tally;
     uint32_t *spare; /* for sorting what the tally has touched */
     cscd_winding *items;
     size_t count, capacity;
     bool out_of_memory;
-} winding_lane;
+} winding_worker;
 
 /* The findings of the last call, and the memory of all calls. Nodes are connected to patches. The nodes are
  * the vertices, and the ends of edges, whose numbers come behind those of the vertices. A vertex at which
@@ -285,7 +285,7 @@ typedef struct patch_finder {
     const cscd_mesh *mesh;
     const object_set *objects;    /* one for each object, or NULL: there are no rules */
     const surface_bodies *bodies; /* of the surface found last */
-    uint32_t lane_count;
+    uint32_t worker_count;
 
     bool *cut_edges;      /* per edge: a curve cuts it */
     bool *split_vertices; /* per vertex: curves end at it */
@@ -301,13 +301,13 @@ typedef struct patch_finder {
     size_t patch_count, patch_capacity;
     cscd_winding *windings;
     size_t winding_count, winding_capacity;
-    winding_lane *lanes;
-    uint32_t tally_capacity; /* of each lane: bodies */
+    winding_worker *workers;
+    uint32_t tally_capacity; /* of each worker: bodies */
     memory_budget *budget;   /* of the call; NULL: there is no limit */
 } patch_finder;
 
 /* On failure, which is OUT_OF_MEMORY without a sentence, *out holds nothing. */
-cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t lane_count, patch_finder *out);
+cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t worker_count, patch_finder *out);
 void patch_finder_free(patch_finder *p);
 
 /* Finds the patches between the pieces of all curves. The bounds of the trees are those of the surface's positions. */

@@ -22,18 +22,18 @@ static array_list list_arrays(patch_finder *p) {
                          ARRAY(p->node_patches, node_count(p->mesh)),
                          ARRAY(p->component_patch, p->mesh->component_count),
                          ARRAY(p->vertex_patches, vertices), ARRAY(p->triangle_patches, triangles),
-                         ARRAY(p->corner_patches, 3 * triangles), ARRAY(p->lanes, p->lane_count)}};
+                         ARRAY(p->corner_patches, 3 * triangles), ARRAY(p->workers, p->worker_count)}};
 }
 
-static array_list list_lane(winding_lane *lane, size_t bodies) {
-    winding_tally *t = &lane->tally;
+static array_list list_worker(winding_worker *worker, size_t bodies) {
+    winding_tally *t = &worker->tally;
     return (array_list){{ARRAY(t->numbers, bodies), ARRAY(t->is_touched, bodies), ARRAY(t->touched, bodies),
-                         ARRAY(lane->spare, bodies)}};
+                         ARRAY(worker->spare, bodies)}};
 }
 
 static void free_tallies(patch_finder *p) {
-    for (uint32_t i = 0; i < p->lane_count; i++)
-        context_free_all(p->mesh->context, list_lane(&p->lanes[i], 0));
+    for (uint32_t i = 0; i < p->worker_count; i++)
+        context_free_all(p->mesh->context, list_worker(&p->workers[i], 0));
     p->tally_capacity = 0;
 }
 
@@ -41,8 +41,8 @@ static void free_tallies(patch_finder *p) {
 static bool reserve_tallies(patch_finder *p, uint32_t bodies) {
     if (bodies <= p->tally_capacity) return true;
     free_tallies(p);
-    for (uint32_t i = 0; i < p->lane_count; i++) {
-        if (context_allocate_all(p->mesh->context, list_lane(&p->lanes[i], bodies))) continue;
+    for (uint32_t i = 0; i < p->worker_count; i++) {
+        if (context_allocate_all(p->mesh->context, list_worker(&p->workers[i], bodies))) continue;
         free_tallies(p);
         return false;
     }
@@ -50,8 +50,8 @@ static bool reserve_tallies(patch_finder *p, uint32_t bodies) {
     return true;
 }
 
-cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t lane_count, patch_finder *out) {
-    patch_finder p = {.mesh = mesh, .lane_count = lane_count};
+cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t worker_count, patch_finder *out) {
+    patch_finder p = {.mesh = mesh, .worker_count = worker_count};
     if (!context_allocate_all(mesh->context, list_arrays(&p))) return CSCD_OUT_OF_MEMORY;
     if (!reserve_tallies(&p, mesh->object_count)) {
         patch_finder_free(&p);
@@ -65,7 +65,7 @@ void patch_finder_free(patch_finder *p) {
     if (p->mesh == NULL) return;
     cscd_context *context = p->mesh->context;
     free_tallies(p);
-    for (uint32_t i = 0; i < p->lane_count; i++) context_free(context, p->lanes[i].items);
+    for (uint32_t i = 0; i < p->worker_count; i++) context_free(context, p->workers[i].items);
     context_free_all(context, list_arrays(p));
     context_free(context, p->patches);
     context_free(context, p->windings);
@@ -259,64 +259,64 @@ static int compare_numbers(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* A number is in the list of a lane, and then in that of all. */
+/* A number is in the list of a worker, and then in that of all. */
 enum { WINDING_SIZE = (MEMORY_WHILE_DOUBLING + 2) * sizeof(cscd_winding) };
 
-/* Lanes stop when all of them together have too many, which is so whenever the number of all is too large. */
-static bool keep_number(const patch_work *work, winding_lane *lane, cscd_winding number) {
+/* Workers stop when all of them together have too many, which is so whenever the number of all is too large. */
+static bool keep_number(const patch_work *work, winding_worker *worker, cscd_winding number) {
     const patch_finder *p = work->finder;
     if (atomic_fetch_add_explicit(work->windings, 1, memory_order_relaxed) >= work->most_windings)
         return false;
-    if (lane->count == lane->capacity) {
-        void *grown =
-            grow_twice(p->mesh->context, lane->items, &lane->capacity, lane->count, sizeof *lane->items);
+    if (worker->count == worker->capacity) {
+        void *grown = grow_twice(p->mesh->context, worker->items, &worker->capacity, worker->count,
+                                 sizeof *worker->items);
         if (grown == NULL) return false;
-        lane->items = grown;
+        worker->items = grown;
     }
-    lane->items[lane->count++] = number;
+    worker->items[worker->count++] = number;
     return true;
 }
 
-/* Adds the numbers of a patch to the lane's; first_winding counts within the lane. */
-static bool number_patch(const patch_work *work, winding_lane *lane, cscd_patch *patch) {
+/* Adds the numbers of a patch to the worker's; first_winding counts within the worker. */
+static bool number_patch(const patch_work *work, winding_worker *worker, cscd_patch *patch) {
     patch_finder *p = work->finder;
-    winding_tally *tally = &lane->tally;
+    winding_tally *tally = &worker->tally;
     winding_tally_clear(tally);
     winding_find(work->surface, work->bvh, (corner_side){patch->triangle, (uint8_t)patch->corner, true},
                  tally);
-    sort_items(tally->touched, lane->spare, tally->count, sizeof *tally->touched, compare_numbers);
-    patch->first_winding = (uint32_t)lane->count;
+    sort_items(tally->touched, worker->spare, tally->count, sizeof *tally->touched, compare_numbers);
+    patch->first_winding = (uint32_t)worker->count;
     for (uint32_t i = 0; i < tally->count; i++) {
         cscd_winding number = {tally->touched[i], tally->numbers[tally->touched[i]]};
         if (number.number == 0 || !patch_bodies_look(p, patch->body, number.body)) continue;
         if (number.body == patch->body) patch->own = number.number;
-        if (!keep_number(work, lane, number)) return false;
+        if (!keep_number(work, worker, number)) return false;
         patch->winding_count++;
     }
     return true;
 }
 
-/* A lane has patches that follow each other. */
+/* A worker has patches that follow each other. */
 static void number_patches(void *data, uint32_t index) {
     const patch_work *work = data;
     patch_finder *p = work->finder;
-    winding_lane *lane = &p->lanes[index];
-    size_t begin = parallel_share(p->patch_count, index, p->lane_count);
-    size_t end = parallel_share(p->patch_count, index + 1, p->lane_count);
-    lane->count = 0;
-    lane->out_of_memory = false;
-    for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+    winding_worker *worker = &p->workers[index];
+    size_t begin = parallel_share(p->patch_count, index, p->worker_count);
+    size_t end = parallel_share(p->patch_count, index + 1, p->worker_count);
+    worker->count = 0;
+    worker->out_of_memory = false;
+    for (size_t i = begin; i < end && !worker->out_of_memory; i++) {
         double share = (double)(i - begin) / (double)(end - begin);
         if (!progress_go_on(&p->mesh->context->progress, share)) return;
-        lane->out_of_memory = !number_patch(work, lane, &p->patches[i]);
+        worker->out_of_memory = !number_patch(work, worker, &p->patches[i]);
     }
 }
 
 static bool join_numbers(patch_finder *p) {
     size_t total = 0;
-    for (uint32_t i = 0; i < p->lane_count; i++) {
-        if (p->lanes[i].out_of_memory) return false;
-        total += p->lanes[i].count;
+    for (uint32_t i = 0; i < p->worker_count; i++) {
+        if (p->workers[i].out_of_memory) return false;
+        total += p->workers[i].count;
     }
     while (total > p->winding_capacity) {
         void *grown = grow_twice(p->mesh->context, p->windings, &p->winding_capacity, 0, sizeof *p->windings);
@@ -324,14 +324,14 @@ static bool join_numbers(patch_finder *p) {
         p->windings = grown;
     }
     p->winding_count = 0;
-    for (uint32_t i = 0; i < p->lane_count; i++) {
-        size_t begin = parallel_share(p->patch_count, i, p->lane_count),
-               end = parallel_share(p->patch_count, i + 1, p->lane_count);
+    for (uint32_t i = 0; i < p->worker_count; i++) {
+        size_t begin = parallel_share(p->patch_count, i, p->worker_count),
+               end = parallel_share(p->patch_count, i + 1, p->worker_count);
         for (size_t k = begin; k < end; k++) p->patches[k].first_winding += (uint32_t)p->winding_count;
-        if (p->lanes[i].count > 0)
-            memcpy(p->windings + p->winding_count, p->lanes[i].items,
-                   p->lanes[i].count * sizeof *p->windings);
-        p->winding_count += p->lanes[i].count;
+        if (p->workers[i].count > 0)
+            memcpy(p->windings + p->winding_count, p->workers[i].items,
+                   p->workers[i].count * sizeof *p->windings);
+        p->winding_count += p->workers[i].count;
     }
     return true;
 }
@@ -346,9 +346,9 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
     connect_nodes(p);
     if (!name_patches(&work)) return CSCD_OUT_OF_MEMORY;
     work.most_windings = memory_budget_room(p->budget, WINDING_SIZE);
-    parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
+    parallel_run(p->mesh->context->threads, p->worker_count, number_patches, &work);
     if (progress_cancelled(&p->mesh->context->progress)) return CSCD_CANCELLED;
-    /* how many more lanes have counted before they stopped depends on their number */
+    /* how many more workers have counted before they stopped depends on their number */
     size_t counted = windings > work.most_windings ? work.most_windings + 1 : windings;
     if (!memory_budget_take(p->budget, counted, WINDING_SIZE)) return CSCD_OUT_OF_MEMORY;
     if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;

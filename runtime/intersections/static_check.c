@@ -7,79 +7,83 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* ---- lanes --------------------------------------------------------------------------------------------- */
+/* ---- workers --------------------------------------------------------------------------------------------- */
 
-/* A lane grows by half: with the room that it leaves meanwhile, 27.5 bytes for each pair that it has. */
+/* A worker grows by half: with the room that it leaves meanwhile, 27.5 bytes for each pair that it has. */
 enum { ROOM_LEAST = 256, EVEN_ROOM_MOST = 1 << 16 };
 
-static bool grow_items(cscd_context *context, intersection_lane *lane, size_t capacity) {
-    found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
+static bool grow_items(cscd_context *context, intersection_worker *worker, size_t capacity) {
+    found_pair *grown = context_grow(context, worker->items, worker->count, capacity, sizeof *worker->items);
     if (grown == NULL) return false;
-    lane->items = grown;
-    lane->capacity = capacity;
+    worker->items = grown;
+    worker->capacity = capacity;
     return true;
 }
 
-static bool make_room(cscd_context *context, intersection_lane *lane) {
-    return grow_items(context, lane, lane->capacity == 0 ? ROOM_LEAST : lane->capacity + lane->capacity / 2);
+static bool make_room(cscd_context *context, intersection_worker *worker) {
+    return grow_items(context, worker,
+                      worker->capacity == 0 ? ROOM_LEAST : worker->capacity + worker->capacity / 2);
 }
 
-static bool make_room_for_notes(cscd_context *context, intersection_lane *lane) {
-    pair_note *grown = context_grow(context, lane->notes, lane->count, lane->capacity, sizeof *lane->notes);
+static bool make_room_for_notes(cscd_context *context, intersection_worker *worker) {
+    pair_note *grown =
+        context_grow(context, worker->notes, worker->count, worker->capacity, sizeof *worker->notes);
     if (grown == NULL) return false;
-    lane->notes = grown;
-    lane->note_capacity = lane->capacity;
+    worker->notes = grown;
+    worker->note_capacity = worker->capacity;
     return true;
 }
 
 /* Adds a pair of triangles in any order. No memory: out_of_memory is set. */
-static void add_pair(cscd_context *context, intersection_lane *lane, triangle_pair t) {
-    if (lane->count == lane->capacity && !make_room(context, lane))
-        lane->out_of_memory = true;
+static void add_pair(cscd_context *context, intersection_worker *worker, triangle_pair t) {
+    if (worker->count == worker->capacity && !make_room(context, worker))
+        worker->out_of_memory = true;
     else
-        lane->items[lane->count++] = (found_pair){t.a < t.b ? t.a : t.b, t.a < t.b ? t.b : t.a};
+        worker->items[worker->count++] = (found_pair){t.a < t.b ? t.a : t.b, t.a < t.b ? t.b : t.a};
 }
 
-static void add_noted_pair(cscd_context *context, intersection_lane *lane, triangle_pair t, pair_note note) {
-    bool room = lane->count < lane->capacity || make_room(context, lane);
-    if (room && lane->note_capacity < lane->capacity) room = make_room_for_notes(context, lane);
-    if (room) lane->notes[lane->count] = note;
+static void add_noted_pair(cscd_context *context, intersection_worker *worker, triangle_pair t,
+                           pair_note note) {
+    bool room = worker->count < worker->capacity || make_room(context, worker);
+    if (room && worker->note_capacity < worker->capacity) room = make_room_for_notes(context, worker);
+    if (room) worker->notes[worker->count] = note;
     if (room)
-        add_pair(context, lane, t);
+        add_pair(context, worker, t);
     else
-        lane->out_of_memory = true;
+        worker->out_of_memory = true;
 }
 
-/* The pairs that a thread finds depend on the moments at which threads come for work, so its lane might need
- * more room in any call. Once a call has found its pairs, each lane has room for all of them, unless they are
+/* The pairs that a thread finds depend on the moments at which threads come for work, so its worker might need
+ * more room in any call. Once a call has found its pairs, each worker has room for all of them, unless they are
  * very many. False: no memory. */
-static bool even_out_lanes(cscd_context *context, intersection_lane *lanes, uint32_t count, bool notes) {
+static bool even_out_workers(cscd_context *context, intersection_worker *workers, uint32_t count,
+                             bool notes) {
     size_t total = 0;
-    for (uint32_t i = 0; i < count; i++) total += lanes[i].count;
+    for (uint32_t i = 0; i < count; i++) total += workers[i].count;
     const size_t room = total <= EVEN_ROOM_MOST ? ROOM_LEAST + total + total / 4 : 0;
     for (uint32_t i = 0; i < count && total > 0; i++) {
-        intersection_lane *lane = &lanes[i];
-        if (lane->capacity < room && !grow_items(context, lane, room)) return false;
-        if (notes && lane->note_capacity < lane->capacity && !make_room_for_notes(context, lane))
+        intersection_worker *worker = &workers[i];
+        if (worker->capacity < room && !grow_items(context, worker, room)) return false;
+        if (notes && worker->note_capacity < worker->capacity && !make_room_for_notes(context, worker))
             return false;
     }
     return true;
 }
 
-static void free_lane(cscd_context *context, intersection_lane *lane) {
-    context_free(context, lane->items);
-    context_free(context, lane->notes);
+static void free_worker(cscd_context *context, intersection_worker *worker) {
+    context_free(context, worker->items);
+    context_free(context, worker->notes);
 }
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
 static array_list list_arrays(static_check *c) {
     return (array_list){{ARRAY(c->unproven, c->mesh->triangle_count),
-                         ARRAY(c->crossing, c->mesh->triangle_count), ARRAY(c->lanes, c->lane_count)}};
+                         ARRAY(c->crossing, c->mesh->triangle_count), ARRAY(c->workers, c->worker_count)}};
 }
 
-cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, static_check *out) {
-    static_check c = {.mesh = mesh, .lane_count = lane_count, .limit = SIZE_MAX};
+cscd_status static_check_create(const cscd_mesh *mesh, uint32_t worker_count, static_check *out) {
+    static_check c = {.mesh = mesh, .worker_count = worker_count, .limit = SIZE_MAX};
     cscd_status status = vertex_stars_create(mesh, &c.stars);
     if (status == CSCD_OK && !context_allocate_all(mesh->context, list_arrays(&c))) {
         vertex_stars_destroy(&c.stars);
@@ -92,7 +96,7 @@ cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, stat
 void static_check_destroy(static_check *c) {
     if (c->mesh == NULL) return;
     cscd_context *context = c->mesh->context;
-    for (uint32_t i = 0; i < c->lane_count; i++) free_lane(context, &c->lanes[i]);
+    for (uint32_t i = 0; i < c->worker_count; i++) free_worker(context, &c->workers[i]);
     context_free_all(context, list_arrays(c));
     vertex_stars_destroy(&c->stars);
     *c = (static_check){0};
@@ -119,14 +123,14 @@ static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
     return triangle_contains(a, b[0]) && triangle_contains(a, b[1]) && triangle_contains(a, b[2]);
 }
 
-static void test_kind(const check_work *work, intersection_lane *lane, triangle_pair t) {
+static void test_kind(const check_work *work, intersection_worker *worker, triangle_pair t) {
     const uint32_t(*triangles)[3] = triangles_of(work);
     const uint32_t *a = triangles[t.a], *b = triangles[t.b];
     pair_kind found;
     if (!pair_kind_find(a, b, work->names, work->positions, &found)) return;
     const pair_note note = {(uint8_t)found.kind, (uint8_t)found.shared,
                             found.kind == CSCD_INTERSECTION_DUPLICATE && same_triangle(a, b)};
-    add_noted_pair(work->check->mesh->context, lane, t, note);
+    add_noted_pair(work->check->mesh->context, worker, t, note);
 }
 
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
@@ -136,7 +140,7 @@ static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
 }
 
 /* Replaces the slots of a batch by triangles, and drops the pairs that do not count. */
-static void name_triangles(const check_work *work, traversal_lane *batch) {
+static void name_triangles(const check_work *work, traversal_worker *batch) {
     const uint32_t *components = work->check->mesh->triangle_components;
     uint32_t kept = 0;
     for (uint32_t i = 0; i < batch->pair_count; i++) {
@@ -149,50 +153,50 @@ static void name_triangles(const check_work *work, traversal_lane *batch) {
 }
 
 /* An edge of one certainly passes through the inside of the other: if both have an area, they cross. */
-static void add_crossing(const check_work *work, intersection_lane *lane, triangle_pair t) {
+static void add_crossing(const check_work *work, intersection_worker *worker, triangle_pair t) {
     cscd_context *context = work->check->mesh->context;
     const uint8_t *normals = work->check->stars.normals;
     if (!work->check->kinds) {
-        add_pair(context, lane, t);
+        add_pair(context, worker, t);
     } else if (normals[t.a] == 0 || normals[t.b] == 0) {
-        test_kind(work, lane, t);
+        test_kind(work, worker, t);
     } else {
         const uint32_t(*triangles)[3] = triangles_of(work);
         uint32_t shared = pair_kind_count_shared(triangles[t.a], triangles[t.b], work->names);
         const pair_note note = {CSCD_INTERSECTION_CROSSING, (uint8_t)shared, false};
-        add_noted_pair(context, lane, t, note);
+        add_noted_pair(context, worker, t, note);
     }
 }
 
-static void test_pair(const check_work *work, intersection_lane *lane, triangle_pair t) {
+static void test_pair(const check_work *work, intersection_worker *worker, triangle_pair t) {
     const uint32_t(*triangles)[3] = triangles_of(work);
     if (work->check->kinds)
-        test_kind(work, lane, t);
+        test_kind(work, worker, t);
     else if (triangles_intersect(triangles[t.a], triangles[t.b], work->positions))
-        add_pair(work->check->mesh->context, lane, t);
+        add_pair(work->check->mesh->context, worker, t);
 }
 
 enum { PAIRS_AT_ONCE = 1024 };
 
-/* Adds those pairs of triangles of a batch that intersect to the lane of the same number. */
+/* Adds those pairs of triangles of a batch that intersect to the worker of the same number. */
 static void test_pairs(const check_work *work, uint32_t index) {
     const intersection_kernels *kernels = intersection_kernels_of(work->check->mesh->context);
-    traversal_lane *batch = &work->traversal->lanes[index];
-    intersection_lane *lane = &work->check->lanes[index];
+    traversal_worker *batch = &work->traversal->workers[index];
+    intersection_worker *worker = &work->check->workers[index];
     for (uint32_t begin = 0; begin < batch->pair_count; begin += PAIRS_AT_ONCE) {
         triangle_pair *pairs = batch->pairs + begin, crossing[PAIRS_AT_ONCE];
         uint32_t rest = batch->pair_count - begin, crossing_count;
         uint32_t undecided = kernels->reject_disjoint(triangles_of(work), work->positions, pairs,
                                                       rest < PAIRS_AT_ONCE ? rest : PAIRS_AT_ONCE,
                                                       work->check->kinds, crossing, &crossing_count);
-        for (uint32_t i = 0; i < crossing_count; i++) add_crossing(work, lane, crossing[i]);
-        for (uint32_t i = 0; i < undecided; i++) test_pair(work, lane, pairs[i]);
+        for (uint32_t i = 0; i < crossing_count; i++) add_crossing(work, worker, crossing[i]);
+        for (uint32_t i = 0; i < undecided; i++) test_pair(work, worker, pairs[i]);
     }
 }
 
-/* Adds the pairs of a batch that intersect to the lane of the same number. */
+/* Adds the pairs of a batch that intersect to the worker of the same number. */
 static void find_pairs_of_batch(const check_work *work, uint32_t index) {
-    name_triangles(work, &work->traversal->lanes[index]);
+    name_triangles(work, &work->traversal->workers[index]);
     test_pairs(work, index);
 }
 
@@ -225,8 +229,8 @@ static bool adjacent_pair_counts(const check_work *work, const uint32_t pair[2])
 
 static void test_stars(void *data, uint32_t index) {
     const check_work *work = data;
-    traversal_lane *batch = &work->traversal->lanes[index];
-    star_cursor *cursor = &work->check->lanes[index].stars;
+    traversal_worker *batch = &work->traversal->workers[index];
+    star_cursor *cursor = &work->check->workers[index].stars;
     uint32_t pair[2];
     batch->pair_count = 0;
     while (batch->pair_count < TRAVERSAL_BATCH_SIZE &&
@@ -255,9 +259,9 @@ static bool star_counts(const check_work *work, uint32_t vertex) {
 static void mark_clear_stars(void *data, uint32_t index) {
     const check_work *work = data;
     static_check *check = work->check;
-    uint64_t count = check->mesh->vertex_count, lanes = check->lane_count;
-    uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
-    check->lanes[index].stars = star_cursor_over(begin, end);
+    uint64_t count = check->mesh->vertex_count, workers = check->worker_count;
+    uint32_t begin = (uint32_t)(count * index / workers), end = (uint32_t)(count * (index + 1) / workers);
+    check->workers[index].stars = star_cursor_over(begin, end);
     vertex_stars_mark_clear(&check->stars, begin, end);
     for (uint32_t v = begin; v < end; v++) {
         if (!check->stars.clear[v] && !star_counts(work, v)) check->stars.clear[v] = true;
@@ -277,7 +281,8 @@ enum { AREA_BATCH = 512 };
 
 /* Finds the signs of the triangles begin to end - 1, at most AREA_BATCH, and marks those of the unproven ones that have no
  * area. */
-static void mark_zero_area(const check_work *work, intersection_lane *lane, uint32_t begin, uint32_t end) {
+static void mark_zero_area(const check_work *work, intersection_worker *worker, uint32_t begin,
+                           uint32_t end) {
     const static_check *check = work->check;
     const vertex_stars *stars = &check->stars;
     uint32_t list[AREA_BATCH], count = 0;
@@ -293,35 +298,35 @@ static void mark_zero_area(const check_work *work, intersection_lane *lane, uint
         if (stars->normals[list[i]] != 0 || !check->unproven[list[i]] || !has_no_area(work, list[i]))
             continue;
         check->crossing[list[i]] = true;
-        if (lane->zero_area_triangles++ == 0) lane->first_zero_area = list[i];
+        if (worker->zero_area_triangles++ == 0) worker->first_zero_area = list[i];
     }
 }
 
-/* Empties a lane, and looks for triangles without area in its share of the mesh. */
+/* Empties a worker, and looks for triangles without area in its share of the mesh. */
 static void count_zero_area(void *data, uint32_t index) {
     const check_work *work = data;
     const static_check *check = work->check;
-    intersection_lane *lane = &check->lanes[index];
-    uint64_t count = check->mesh->triangle_count, lanes = check->lane_count;
-    uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
-    *lane = (intersection_lane){.items = lane->items,
-                                .notes = lane->notes,
-                                .capacity = lane->capacity,
-                                .note_capacity = lane->note_capacity,
-                                .first_zero_area = UINT32_MAX};
+    intersection_worker *worker = &check->workers[index];
+    uint64_t count = check->mesh->triangle_count, workers = check->worker_count;
+    uint32_t begin = (uint32_t)(count * index / workers), end = (uint32_t)(count * (index + 1) / workers);
+    *worker = (intersection_worker){.items = worker->items,
+                                    .notes = worker->notes,
+                                    .capacity = worker->capacity,
+                                    .note_capacity = worker->note_capacity,
+                                    .first_zero_area = UINT32_MAX};
     for (uint32_t t = begin; t < end; t += AREA_BATCH)
-        mark_zero_area(work, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
+        mark_zero_area(work, worker, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
 
 /* ---- all of it ----------------------------------------------------------------------------------------- */
 
 static void mark_crossing(static_check *c) {
     const uint32_t *components = c->mesh->triangle_components;
-    for (uint32_t i = 0; i < c->lane_count; i++) {
-        const intersection_lane *lane = &c->lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            found_pair pair = lane->items[j];
-            if (components[pair.a] != components[pair.b] || (c->kinds && lane->notes[j].unlisted)) continue;
+    for (uint32_t i = 0; i < c->worker_count; i++) {
+        const intersection_worker *worker = &c->workers[i];
+        for (size_t j = 0; j < worker->count; j++) {
+            found_pair pair = worker->items[j];
+            if (components[pair.a] != components[pair.b] || (c->kinds && worker->notes[j].unlisted)) continue;
             c->crossing[pair.a] = c->crossing[pair.b] = true;
         }
     }
@@ -329,43 +334,44 @@ static void mark_crossing(static_check *c) {
 
 static void spill_pairs(static_check *c) {
     bool full = false;
-    for (uint32_t i = 0; i < c->lane_count; i++) full |= c->lanes[i].count - c->lanes[i].settled >= c->limit;
+    for (uint32_t i = 0; i < c->worker_count; i++)
+        full |= c->workers[i].count - c->workers[i].settled >= c->limit;
     if (!full) return;
     mark_crossing(c);
     if (c->spill != NULL) c->spill(c->spill_data);
-    for (uint32_t i = 0; c->spill == NULL && i < c->lane_count; i++) c->lanes[i].count = 0;
+    for (uint32_t i = 0; c->spill == NULL && i < c->worker_count; i++) c->workers[i].count = 0;
 }
 
-/* Empties the lanes, and looks for triangles without area. */
+/* Empties the workers, and looks for triangles without area. */
 static void begin_check(check_work *work) {
-    parallel_run(work->check->mesh->context->threads, work->check->lane_count, count_zero_area, work);
+    parallel_run(work->check->mesh->context->threads, work->check->worker_count, count_zero_area, work);
 }
 
-static bool any_pairs(const traversal *t, uint32_t lane_count) {
-    for (uint32_t i = 0; i < lane_count; i++) {
-        if (t->lanes[i].pair_count > 0) return true;
+static bool any_pairs(const traversal *t, uint32_t worker_count) {
+    for (uint32_t i = 0; i < worker_count; i++) {
+        if (t->workers[i].pair_count > 0) return true;
     }
     return false;
 }
 
 static cscd_status end_round(static_check *check) {
-    for (uint32_t i = 0; i < check->lane_count; i++) {
-        if (check->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < check->worker_count; i++) {
+        if (check->workers[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
     }
     spill_pairs(check);
     return CSCD_OK;
 }
 
-/* Lanes whose batches are not full find nothing in the next round; in the last one nobody finds anything. */
+/* Workers whose batches are not full find nothing in the next round; in the last one nobody finds anything. */
 static cscd_status compare_adjacent(check_work *work) {
     static_check *check = work->check;
     cscd_context *context = check->mesh->context;
     cscd_status status = CSCD_OK;
-    parallel_run(context->threads, check->lane_count, mark_clear_stars, work);
+    parallel_run(context->threads, check->worker_count, mark_clear_stars, work);
     for (bool more = true; more && status == CSCD_OK;) {
         if (!progress_go_on(&context->progress, 0.0)) break;
-        parallel_run(context->threads, check->lane_count, test_stars, work);
-        more = any_pairs(work->traversal, check->lane_count);
+        parallel_run(context->threads, check->worker_count, test_stars, work);
+        more = any_pairs(work->traversal, check->worker_count);
         status = end_round(check);
     }
     return status;
@@ -379,7 +385,7 @@ static cscd_status compare_found(check_work *work) {
         if (!progress_go_on(&context->progress, traversal_done(work->traversal))) break;
         status = traversal_round(work->traversal, &more);
         if (status != CSCD_OK) break;
-        parallel_run(context->threads, check->lane_count, test_batch, work);
+        parallel_run(context->threads, check->worker_count, test_batch, work);
         status = end_round(check);
     }
     return status;
@@ -387,7 +393,7 @@ static cscd_status compare_found(check_work *work) {
 
 static cscd_status compare_triangles(check_work *work, bvh *hierarchy, traversal_pass pass) {
     static_check *check = work->check;
-    assert(check->lane_count == work->traversal->lane_count);
+    assert(check->worker_count == work->traversal->worker_count);
     begin_check(work);
     if (check->mesh->triangle_count == 0) return CSCD_OK;
     if (work->by_stars)
@@ -398,7 +404,7 @@ static cscd_status compare_triangles(check_work *work, bvh *hierarchy, traversal
     cscd_status status = work->by_stars ? compare_adjacent(work) : CSCD_OK;
     if (status == CSCD_OK) status = compare_found(work);
     if (status != CSCD_OK) return status;
-    if (!even_out_lanes(check->mesh->context, check->lanes, check->lane_count, check->kinds))
+    if (!even_out_workers(check->mesh->context, check->workers, check->worker_count, check->kinds))
         return CSCD_OUT_OF_MEMORY;
     return context_progress_status(
         check->mesh->context); /* before the caller believes that nothing more was found */
@@ -449,9 +455,9 @@ cscd_status static_check_kinds(static_check *c, traversal *t, bvh *hierarchy, co
 /* Tasks are done in rounds, larger and larger ones; after each round the pairs are counted in the order of the tasks. A task
  * that alone has enough pairs makes all later ones needless. */
 
-/* The pairs of a task: a range of the list of a lane. */
+/* The pairs of a task: a range of the list of a worker. */
 typedef struct task_pairs {
-    uint32_t lane;
+    uint32_t worker;
     size_t begin, count;
 } task_pairs;
 
@@ -465,13 +471,13 @@ typedef struct pair_hunt {
 } pair_hunt;
 
 /* Removes the pairs from first on that do not count. */
-static void keep_counting(const pair_hunt *hunt, intersection_lane *lane, size_t first) {
+static void keep_counting(const pair_hunt *hunt, intersection_worker *worker, size_t first) {
     size_t kept = first;
-    for (size_t i = first; i < lane->count; i++) {
-        intersection_lane_move(lane, i, kept);
-        kept += hunt->quest->counts(hunt->quest->data, lane->items[i], lane->notes[i]);
+    for (size_t i = first; i < worker->count; i++) {
+        intersection_worker_move(worker, i, kept);
+        kept += hunt->quest->counts(hunt->quest->data, worker->items[i], worker->notes[i]);
     }
-    lane->count = kept;
+    worker->count = kept;
 }
 
 static void lower_last(pair_hunt *hunt, uint32_t task) {
@@ -487,22 +493,22 @@ static bool task_is_enough(const pair_hunt *hunt, size_t count) {
 
 static void search_task(pair_hunt *hunt, uint32_t index, uint32_t task) {
     traversal *t = hunt->work.traversal;
-    intersection_lane *lane = &hunt->work.check->lanes[index];
-    size_t begin = lane->count;
+    intersection_worker *worker = &hunt->work.check->workers[index];
+    size_t begin = worker->count;
     bool enough = false;
     traversal_begin_task(t, index, task);
-    while (!enough && task <= atomic_load(&hunt->last) && !lane->out_of_memory &&
+    while (!enough && task <= atomic_load(&hunt->last) && !worker->out_of_memory &&
            traversal_fill_from_task(t, index)) {
-        size_t before = lane->count;
+        size_t before = worker->count;
         find_pairs_of_batch(&hunt->work, index);
-        keep_counting(hunt, lane, before);
-        enough = task_is_enough(hunt, lane->count - begin);
+        keep_counting(hunt, worker, before);
+        enough = task_is_enough(hunt, worker->count - begin);
     }
-    hunt->tasks[task] = (task_pairs){index, begin, lane->count - begin};
+    hunt->tasks[task] = (task_pairs){index, begin, worker->count - begin};
     if (enough) lower_last(hunt, hunt->quest->any ? 0 : task);
 }
 
-/* A lane does one task after the other. */
+/* A worker does one task after the other. */
 static void search_tasks(void *data, uint32_t index) {
     pair_hunt *hunt = data;
     progress *p = &hunt->work.check->mesh->context->progress;
@@ -520,9 +526,9 @@ static cscd_status run_round(pair_hunt *hunt, uint32_t begin, uint32_t end) {
     for (uint32_t task = begin; task < end; task++) hunt->tasks[task] = (task_pairs){.count = 0};
     atomic_store(&hunt->next, begin);
     hunt->end = end;
-    parallel_run(context->threads, c->lane_count, search_tasks, hunt);
-    for (uint32_t i = 0; i < c->lane_count; i++) {
-        if (c->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    parallel_run(context->threads, c->worker_count, search_tasks, hunt);
+    for (uint32_t i = 0; i < c->worker_count; i++) {
+        if (c->workers[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
     }
     cscd_status status = traversal_status(hunt->work.traversal);
     return status == CSCD_OK ? context_progress_status(context) : status;
@@ -530,32 +536,33 @@ static cscd_status run_round(pair_hunt *hunt, uint32_t begin, uint32_t end) {
 
 /* Removes the pairs of a task that do not stay, and those beyond the number that is still wanted. */
 static void settle_task(pair_hunt *hunt, task_pairs *task, size_t wanted) {
-    intersection_lane *lane = &hunt->work.check->lanes[task->lane];
+    intersection_worker *worker = &hunt->work.check->workers[task->worker];
     const pair_quest *quest = hunt->quest;
     size_t kept = 0;
     for (size_t i = 0; i < task->count && kept < wanted; i++) {
-        if (quest->stays != NULL && !quest->stays(quest->data, lane->items[task->begin + i])) continue;
-        intersection_lane_move(lane, task->begin + i, task->begin + kept++);
+        if (quest->stays != NULL && !quest->stays(quest->data, worker->items[task->begin + i])) continue;
+        intersection_worker_move(worker, task->begin + i, task->begin + kept++);
     }
     task->count = kept;
 }
 
-/* Moves the pairs of the tasks together. A lane has done its tasks in ascending order. */
+/* Moves the pairs of the tasks together. A worker has done its tasks in ascending order. */
 static void close_gaps(pair_hunt *hunt, uint32_t task_count) {
     static_check *c = hunt->work.check;
-    for (uint32_t i = 0; i < c->lane_count; i++) c->lanes[i].count = 0;
+    for (uint32_t i = 0; i < c->worker_count; i++) c->workers[i].count = 0;
     for (uint32_t i = 0; i < task_count; i++) {
         const task_pairs *task = &hunt->tasks[i];
-        intersection_lane *lane = &c->lanes[task->lane];
-        for (size_t j = 0; j < task->count; j++) intersection_lane_move(lane, task->begin + j, lane->count++);
+        intersection_worker *worker = &c->workers[task->worker];
+        for (size_t j = 0; j < task->count; j++)
+            intersection_worker_move(worker, task->begin + j, worker->count++);
     }
-    for (uint32_t i = 0; i < c->lane_count; i++) c->lanes[i].settled = c->lanes[i].count;
+    for (uint32_t i = 0; i < c->worker_count; i++) c->workers[i].settled = c->workers[i].count;
 }
 
-/* With one lane, no task is begun that is not needed. */
+/* With one worker, no task is begun that is not needed. */
 static cscd_status run_rounds(pair_hunt *hunt) {
-    uint32_t lanes = hunt->work.check->lane_count, all = hunt->work.traversal->share_count;
-    uint32_t size = lanes, end = 0;
+    uint32_t workers = hunt->work.check->worker_count, all = hunt->work.traversal->share_count;
+    uint32_t size = workers, end = 0;
     size_t found = 0;
     while (end < all && found < hunt->quest->enough) {
         uint32_t begin = end;
@@ -566,7 +573,7 @@ static cscd_status run_rounds(pair_hunt *hunt) {
             settle_task(hunt, &hunt->tasks[i], hunt->quest->enough - found);
             found += hunt->tasks[i].count;
         }
-        if (lanes > 1) size *= 2;
+        if (workers > 1) size *= 2;
     }
     close_gaps(hunt, end);
     return CSCD_OK;

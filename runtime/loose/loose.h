@@ -60,11 +60,11 @@ static inline double loose_reach(const swept_interval *interval, uint32_t object
 /* A face and the ends of an element that this tests, and the triangle's own edges and a wire. The objects are looked at
  * with each other. */
 void loose_pairs_with_triangle(const swept_interval *interval, const loose_element *element,
-                               uint32_t triangle, contact_lane *lane);
+                               uint32_t triangle, contact_worker *worker);
 
 /* Two elements: nothing, unless their objects are looked at with each other and they share no vertex. */
 void loose_pairs_of_elements(const swept_interval *interval, const loose_element *a, const loose_element *b,
-                             contact_lane *lane);
+                             contact_worker *worker);
 
 /* Are two elements, by their numbers as edges, ever in contact? Where a point and a wire, or two points, have no distance
  * to keep they are not looked at: as they move they never meet exactly, or only where rounding decides. */
@@ -80,24 +80,24 @@ static inline bool loose_edges_meet(const swept_interval *interval, uint32_t a, 
 typedef struct loose_search {
     const swept_interval *interval;
     const loose_elements *elements;
-    uint32_t lane_count; /* that share the search */
+    uint32_t worker_count; /* that share the search */
 } loose_search;
 
-/* Puts the lane's share of all pairs that may come within their distance in the lane's queue, and decides
- * them. The lane of a pair depends on the number of lanes alone. */
-void loose_search_test(const loose_search *search, uint32_t lane_index, contact_lane *lane);
+/* Puts the worker's share of all pairs that may come within their distance in the worker's queue, and decides
+ * them. The worker of a pair depends on the number of workers alone. */
+void loose_search_test(const loose_search *search, uint32_t worker_index, contact_worker *worker);
 
 /* The same for every pair, without a box: the reference. */
-void loose_search_test_all(const loose_search *search, uint32_t lane_index, contact_lane *lane);
+void loose_search_test_all(const loose_search *search, uint32_t worker_index, contact_worker *worker);
 
 /* Tests one pair, named as in a cscd_contact; of triangles, too. */
 void loose_search_test_pair(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                            contact_lane *lane);
+                            contact_worker *worker);
 
 /* One vertex and a half-space. */
 void half_spaces_test_vertex(const swept_interval *interval, uint32_t vertex, uint32_t object,
-                             contact_lane *lane);
+                             contact_worker *worker);
 
-/* The lane's share of vertices against half-spaces. Candidates are never collected of these: a test costs no more. */
-void half_spaces_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
-                      contact_lane *lane);
+/* The worker's share of vertices against half-spaces. Candidates are never collected of these: a test costs no more. */
+void half_spaces_test(const swept_interval *interval, uint32_t worker_index, uint32_t worker_count,
+                      contact_worker *worker);

@@ -56,7 +56,7 @@ typedef struct tree_walk {
     const bvh_tree *tree;
     framed_box box; /* in the frame of the tree */
     bool inactive;  /* the element is, and inactive triangles do not count */
-    contact_lane *lane;
+    contact_worker *worker;
 } tree_walk;
 
 static uint32_t children_that_count(const tree_walk *w, int level, uint32_t block, const framed_box *box) {
@@ -89,7 +89,7 @@ static void test_leaf(const tree_walk *w, uint32_t index) {
         uint32_t triangle = leaf->triangles[lane];
         if (w->inactive && (hierarchy->leaf_inactive[index] >> lane & 1) != 0) continue;
         if (triangle_parted(w, leaf, (int)lane)) continue;
-        loose_pairs_with_triangle(w->interval, w->element, triangle, w->lane);
+        loose_pairs_with_triangle(w->interval, w->element, triangle, w->worker);
     }
 }
 
@@ -127,9 +127,9 @@ static void test_tree(tree_walk *w, uint32_t tree) {
 }
 
 /* Above the trees bounds are in the frame of the first one; if it is the only one, there are none. */
-static void test_trees(const swept_interval *interval, const loose_element *element, contact_lane *lane) {
+static void test_trees(const swept_interval *interval, const loose_element *element, contact_worker *worker) {
     const bvh *hierarchy = interval->bvh;
-    tree_walk w = {.interval = interval, .element = element, .lane = lane};
+    tree_walk w = {.interval = interval, .element = element, .worker = worker};
     w.inactive = interval->filter.active != NULL &&
                  !edge_is_active(interval->filter.active, interval->mesh, element->edge);
     if (hierarchy->tree_count <= 1) {
@@ -173,7 +173,7 @@ static bool node_counts(const loose_search *s, uint32_t place, int level, uint32
 }
 
 /* Compares an element with all that come after it in the tree. */
-static void test_elements(const loose_search *s, uint32_t place, contact_lane *lane) {
+static void test_elements(const loose_search *s, uint32_t place, contact_worker *worker) {
     const loose_elements *e = s->elements;
     open_block stack[LOOSE_LEVEL_MAX * LOOSE_NODE_CHILDREN];
     int count = 0;
@@ -183,7 +183,7 @@ static void test_elements(const loose_search *s, uint32_t place, contact_lane *l
         uint32_t last = (uint32_t)((((uint64_t)at.block + 1) << (3 * at.level)) - 1);
         if (last <= place || !node_counts(s, place, at.level, at.block)) continue;
         if (at.level == 0) {
-            loose_pairs_of_elements(s->interval, element_at(e, place), element_at(e, at.block), lane);
+            loose_pairs_of_elements(s->interval, element_at(e, place), element_at(e, at.block), worker);
             continue;
         }
         uint32_t begin = at.block * LOOSE_NODE_CHILDREN, rest = e->levels[at.level - 1].count - begin;
@@ -199,99 +199,102 @@ static bool elements_meet(const swept_interval *interval, const loose_element *e
     return !edge_is_point(interval->mesh, element->edge) || interval->limit.distance > 0.0 || interval->thick;
 }
 
-void loose_search_test(const loose_search *s, uint32_t lane_index, contact_lane *lane) {
+void loose_search_test(const loose_search *s, uint32_t worker_index, contact_worker *worker) {
     const swept_interval *interval = s->interval;
-    uint32_t count = s->elements->count, stride = s->lane_count * ELEMENTS_AT_ONCE;
-    for (uint64_t begin = (uint64_t)lane_index * ELEMENTS_AT_ONCE + lane->cursor * stride; begin < count;
+    uint32_t count = s->elements->count, stride = s->worker_count * ELEMENTS_AT_ONCE;
+    for (uint64_t begin = (uint64_t)worker_index * ELEMENTS_AT_ONCE + worker->cursor * stride; begin < count;
          begin += stride) {
-        if (lane->out_of_memory || !progress_go_on(&interval->mesh->context->progress, (double)begin / count))
+        if (worker->out_of_memory ||
+            !progress_go_on(&interval->mesh->context->progress, (double)begin / count))
             break;
         for (uint64_t i = begin; i < count && i < begin + ELEMENTS_AT_ONCE; i++) {
             const loose_element *element = element_at(s->elements, (uint32_t)i);
-            test_trees(interval, element, lane);
-            if (elements_meet(interval, element)) test_elements(s, (uint32_t)i, lane);
+            test_trees(interval, element, worker);
+            if (elements_meet(interval, element)) test_elements(s, (uint32_t)i, worker);
         }
-        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
+        if (contact_worker_suspend(worker, worker->cursor + 1)) return;
     }
 }
 
-static void test_edges(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
-    if (loose_edges_meet(interval, a, b)) narrow_phase_test_ee(interval, a, b, lane);
+static void test_edges(const swept_interval *interval, uint32_t a, uint32_t b, contact_worker *worker) {
+    if (loose_edges_meet(interval, a, b)) narrow_phase_test_ee(interval, a, b, worker);
 }
 
 void loose_search_test_pair(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                            contact_lane *lane) {
+                            contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
-    if (kind == CSCD_CONTACT_VF) narrow_phase_test_vf(interval, a, b, lane);
-    if (kind == CSCD_CONTACT_EE) narrow_phase_test_ee(interval, a, b, lane);
-    if (kind == CSCD_CONTACT_EV) test_edges(interval, a, mesh_edge_of_point(mesh, b), lane);
+    if (kind == CSCD_CONTACT_VF) narrow_phase_test_vf(interval, a, b, worker);
+    if (kind == CSCD_CONTACT_EE) narrow_phase_test_ee(interval, a, b, worker);
+    if (kind == CSCD_CONTACT_EV) test_edges(interval, a, mesh_edge_of_point(mesh, b), worker);
     if (kind == CSCD_CONTACT_VV)
-        test_edges(interval, mesh_edge_of_point(mesh, a), mesh_edge_of_point(mesh, b), lane);
-    if (kind == CSCD_CONTACT_VH) half_spaces_test_vertex(interval, a, b, lane);
+        test_edges(interval, mesh_edge_of_point(mesh, a), mesh_edge_of_point(mesh, b), worker);
+    if (kind == CSCD_CONTACT_VH) half_spaces_test_vertex(interval, a, b, worker);
 }
 
 /* ---- every pair, without boxes ------------------------------------------------------------------------- */
 
-static void test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle, contact_lane *lane) {
+static void test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
+                    contact_worker *worker) {
     if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VF, vertex, triangle)) return;
     swept_box a = swept_box_of(interval, &vertex, 1),
               b = swept_box_of(interval, interval->mesh->triangles[triangle], 3);
-    lane->feature_pairs++;
+    worker->feature_pairs++;
     if (swept_boxes_within(&a, &b, pair_reach(interval, CSCD_CONTACT_VF, vertex, triangle)))
-        narrow_phase_test_vf(interval, vertex, triangle, lane);
+        narrow_phase_test_vf(interval, vertex, triangle, worker);
 }
 
-static void test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
+static void test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_worker *worker) {
     if (!loose_edges_meet(interval, a, b) ||
         !pair_filter_admits_features(&interval->filter, CSCD_CONTACT_EE, a, b))
         return;
     swept_box box_a = swept_box_of(interval, interval->mesh->edges[a], 2),
               box_b = swept_box_of(interval, interval->mesh->edges[b], 2);
-    lane->feature_pairs++;
+    worker->feature_pairs++;
     if (swept_boxes_within(&box_a, &box_b, pair_reach(interval, CSCD_CONTACT_EE, a, b)))
-        narrow_phase_test_ee(interval, a, b, lane);
+        narrow_phase_test_ee(interval, a, b, worker);
 }
 
 static uint32_t object_of_triangle(const cscd_mesh *mesh, uint32_t triangle) {
     return cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
 }
 
-static void test_triangles(const swept_interval *interval, const loose_element *element, contact_lane *lane) {
+static void test_triangles(const swept_interval *interval, const loose_element *element,
+                           contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (!pair_filter_admits_objects(&interval->filter, element->object, object_of_triangle(mesh, t)))
             continue;
         for (int i = 0; i < 2; i++) {
-            if ((element->ends >> i & 1) != 0) test_vf(interval, mesh->edges[element->edge][i], t, lane);
+            if ((element->ends >> i & 1) != 0) test_vf(interval, mesh->edges[element->edge][i], t, worker);
         }
     }
 }
 
 /* Edges of triangles, and then the elements that come later. */
-static void test_all_edges(const loose_search *s, uint32_t index, contact_lane *lane) {
+static void test_all_edges(const loose_search *s, uint32_t index, contact_worker *worker) {
     const cscd_mesh *mesh = s->interval->mesh;
     const loose_element *element = &s->elements->items[index];
     for (uint32_t e = 0; !edge_is_point(mesh, element->edge) && e < mesh->edge_count; e++) {
         uint32_t object = cscd_mesh_vertex_object(mesh, mesh->edges[e][0]);
         if (!edge_is_loose(mesh, e) &&
             pair_filter_admits_objects(&s->interval->filter, element->object, object))
-            test_ee(s->interval, element->edge, e, lane);
+            test_ee(s->interval, element->edge, e, worker);
     }
     for (uint32_t i = index + 1; i < s->elements->count; i++) {
         const loose_element *other = &s->elements->items[i];
         if (pair_filter_admits_objects(&s->interval->filter, element->object, other->object) &&
             !edges_share_vertex(mesh->edges[element->edge], mesh->edges[other->edge]))
-            test_ee(s->interval, element->edge, other->edge, lane);
+            test_ee(s->interval, element->edge, other->edge, worker);
     }
 }
 
-void loose_search_test_all(const loose_search *s, uint32_t lane_index, contact_lane *lane) {
+void loose_search_test_all(const loose_search *s, uint32_t worker_index, contact_worker *worker) {
     cscd_context *context = s->interval->mesh->context;
-    for (uint32_t i = lane_index + (uint32_t)lane->cursor * s->lane_count;
-         i < s->elements->count && !lane->out_of_memory; i += s->lane_count) {
+    for (uint32_t i = worker_index + (uint32_t)worker->cursor * s->worker_count;
+         i < s->elements->count && !worker->out_of_memory; i += s->worker_count) {
         if (!progress_go_on(&context->progress, (double)i / s->elements->count)) break;
-        test_triangles(s->interval, &s->elements->items[i], lane);
-        test_all_edges(s, i, lane);
-        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
+        test_triangles(s->interval, &s->elements->items[i], worker);
+        test_all_edges(s, i, worker);
+        if (contact_worker_suspend(worker, worker->cursor + 1)) return;
     }
 }

@@ -1,7 +1,7 @@
 /* Every pair of features of triangles that share no vertex: the reference that the other methods must equal. */
 #include "runtime/narrow_phase/narrow_phase.h"
 
-static void test_face(const swept_interval *interval, uint32_t triangle, contact_lane *lane) {
+static void test_face(const swept_interval *interval, uint32_t triangle, contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *corners = mesh->triangles[triangle];
     swept_box face = swept_box_of(interval, corners, 3);
@@ -12,14 +12,14 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
         if (!all && !pair_filter_admits_components(&interval->filter, component, vertex_component(mesh, v)))
             continue;
         if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VF, v, triangle)) continue;
-        lane->feature_pairs++;
+        worker->feature_pairs++;
         swept_box vertex = swept_box_of(interval, &v, 1);
         if (swept_boxes_within(&face, &vertex, pair_reach(interval, CSCD_CONTACT_VF, v, triangle)))
-            narrow_phase_test_vf(interval, v, triangle, lane);
+            narrow_phase_test_vf(interval, v, triangle, worker);
     }
 }
 
-static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *lane) {
+static void test_edge(const swept_interval *interval, uint32_t a, contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *ends_a = mesh->edges[a];
     if (edge_is_loose(mesh, a)) return;
@@ -32,28 +32,28 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
         if (!all && !pair_filter_admits_components(&interval->filter, component, edge_component(mesh, b)))
             continue;
         if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_EE, a, b)) continue;
-        lane->feature_pairs++;
+        worker->feature_pairs++;
         swept_box box_b = swept_box_of(interval, ends_b, 2);
         if (swept_boxes_within(&box_a, &box_b, pair_reach(interval, CSCD_CONTACT_EE, a, b)))
-            narrow_phase_test_ee(interval, a, b, lane);
+            narrow_phase_test_ee(interval, a, b, worker);
     }
 }
 
 /* A row is a triangle with all vertices, or an edge with all edges behind it. The cursor is that of the
- * lane's rows. */
-void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
-                      contact_lane *lane) {
+ * worker's rows. */
+void brute_force_test(const swept_interval *interval, uint32_t worker_index, uint32_t worker_count,
+                      contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
     uint64_t rows = (uint64_t)mesh->triangle_count + mesh->edge_count;
-    lane->suspended = false;
-    for (uint64_t row = lane_index + lane->cursor * lane_count; row < rows && !lane->out_of_memory;
-         row += lane_count) {
+    worker->suspended = false;
+    for (uint64_t row = worker_index + worker->cursor * worker_count; row < rows && !worker->out_of_memory;
+         row += worker_count) {
         if (!progress_go_on(&mesh->context->progress, (double)row / (double)rows)) break;
         if (row < mesh->triangle_count)
-            test_face(interval, (uint32_t)row, lane);
+            test_face(interval, (uint32_t)row, worker);
         else
-            test_edge(interval, (uint32_t)(row - mesh->triangle_count), lane);
-        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
+            test_edge(interval, (uint32_t)(row - mesh->triangle_count), worker);
+        if (contact_worker_suspend(worker, worker->cursor + 1)) return;
     }
-    narrow_phase_finish(interval, lane);
+    narrow_phase_finish(interval, worker);
 }

@@ -8,22 +8,22 @@
 /* A point is an edge behind all others, so it is the second one; with another point it may be the first,
  * too. Its own parameter says nothing. */
 static void add_contact_of_point(const cscd_mesh *mesh, uint32_t a, uint32_t b,
-                                 const elementary_contact *contact, bool bounded, contact_lane *lane) {
+                                 const elementary_contact *contact, bool bounded, contact_worker *worker) {
     bool points = edge_is_point(mesh, a);
     elementary_contact where = *contact;
     where.u = points ? 0.0 : where.u;
     where.v = 0.0;
-    contact_lane_add(mesh->context, lane, points ? CSCD_CONTACT_VV : CSCD_CONTACT_EV,
-                     points ? mesh->edges[a][0] : a, mesh->edges[b][0], &where, bounded);
+    contact_worker_add(mesh->context, worker, points ? CSCD_CONTACT_VV : CSCD_CONTACT_EV,
+                       points ? mesh->edges[a][0] : a, mesh->edges[b][0], &where, bounded);
 }
 
 static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
-                        uint32_t i, const elementary_contact *contact, bool bounded, contact_lane *lane) {
+                        uint32_t i, const elementary_contact *contact, bool bounded, contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
     if (kind == CSCD_CONTACT_EE && edge_is_point(mesh, pairs->b[i]))
-        add_contact_of_point(mesh, pairs->a[i], pairs->b[i], contact, bounded, lane);
+        add_contact_of_point(mesh, pairs->a[i], pairs->b[i], contact, bounded, worker);
     else
-        contact_lane_add(mesh->context, lane, kind, pairs->a[i], pairs->b[i], contact, bounded);
+        contact_worker_add(mesh->context, worker, kind, pairs->a[i], pairs->b[i], contact, bounded);
 }
 
 /* Fills up the last eight with the last pair. */
@@ -65,9 +65,9 @@ static elementary_contact described_contact(const described_contacts *described,
     return contact;
 }
 
-/* Adds their contacts to the lane. The places that are left over describe the last pair again. */
+/* Adds their contacts to the worker. The places that are left over describe the last pair again. */
 static void describe_pairs(const swept_interval *interval, cscd_contact_kind kind,
-                           pairs_to_describe *touching, contact_lane *lane) {
+                           pairs_to_describe *touching, contact_worker *worker) {
     const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     feature_source source = swept_interval_source(interval);
     found_pairs *pairs = &touching->pairs;
@@ -82,7 +82,7 @@ static void describe_pairs(const swept_interval *interval, cscd_contact_kind kin
     (kind == CSCD_CONTACT_VF ? table->describe_vf : table->describe_ee)(&source, pairs, &described);
     for (uint32_t i = 0; i < touching->count; i++) {
         elementary_contact contact = described_contact(&described, i);
-        add_contact(interval, kind, &named, i, &contact, false, lane);
+        add_contact(interval, kind, &named, i, &contact, false, worker);
     }
     touching->count = 0;
 }
@@ -90,19 +90,19 @@ static void describe_pairs(const swept_interval *interval, cscd_contact_kind kin
 /* The pairs in a set of lanes, of the eight from i on, touch. */
 static void note_touching(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
                           uint32_t i, const root_outcomes *roots, uint32_t lanes, pairs_to_describe *touching,
-                          contact_lane *lane) {
+                          contact_worker *worker) {
     for (; lanes != 0; lanes &= lanes - 1) {
         uint32_t at = (uint32_t)__builtin_ctz(lanes), to = touching->count++;
         touching->pairs.a[to] = pairs->a[i + at];
         touching->pairs.b[to] = pairs->b[i + at];
         touching->pairs.begin[to] = roots->begin[at];
-        if (touching->count == LANES) describe_pairs(interval, kind, touching, lane);
+        if (touching->count == LANES) describe_pairs(interval, kind, touching, worker);
     }
 }
 
 /* Eight at a time; keeps the pairs that a kernel leaves open. */
 static void decide_by_roots(const swept_interval *interval, cscd_contact_kind kind, root_kernel *kernel,
-                            feature_pairs *pairs, contact_lane *lane) {
+                            feature_pairs *pairs, contact_worker *worker) {
     feature_source source = swept_interval_source(interval);
     pairs_to_describe touching = {.count = 0};
     uint32_t kept = 0;
@@ -111,16 +111,16 @@ static void decide_by_roots(const swept_interval *interval, cscd_contact_kind ki
         root_outcomes roots;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &roots);
-        note_touching(interval, kind, pairs, i, &roots, real & roots.contacts, &touching, lane);
+        note_touching(interval, kind, pairs, i, &roots, real & roots.contacts, &touching, worker);
         kept = keep_lanes(pairs, i, real & ~roots.contacts & ~roots.apart, kept);
     }
-    describe_pairs(interval, kind, &touching, lane);
-    lane->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
+    describe_pairs(interval, kind, &touching, worker);
+    worker->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
     pairs->count = kept;
 }
 
 static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind kind,
-                              const feature_pairs *pairs, contact_lane *lane) {
+                              const feature_pairs *pairs, contact_worker *worker) {
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_contact contact;
@@ -128,22 +128,22 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
         elementary_verdict verdict;
         if (!still_pair_decide(&query, kind, &verdict, &contact))
             verdict = elementary_after_signs(&query, kind, &contact);
-        lane->decided[verdict.level]++;
-        if (verdict.touching) add_contact(interval, kind, pairs, i, &contact, false, lane);
+        worker->decided[verdict.level]++;
+        if (verdict.touching) add_contact(interval, kind, pairs, i, &contact, false, worker);
     }
 }
 
 static void decide_by_levels(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                             contact_lane *lane) {
+                             contact_worker *worker) {
     const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     feature_source source = swept_interval_source(interval);
     uint32_t tests = pairs->count;
     (kind == CSCD_CONTACT_VF ? table->reject_by_signs_vf : table->reject_by_signs_ee)(&source, pairs);
-    lane->decided[ELEMENTARY_SIGNS] += tests - pairs->count;
+    worker->decided[ELEMENTARY_SIGNS] += tests - pairs->count;
     bool vf = kind == CSCD_CONTACT_VF;
-    decide_by_roots(interval, kind, vf ? table->roots_vf : table->roots_ee, pairs, lane);
-    decide_by_roots(interval, kind, vf ? table->two_roots_vf : table->two_roots_ee, pairs, lane);
-    decide_one_by_one(interval, kind, pairs, lane);
+    decide_by_roots(interval, kind, vf ? table->roots_vf : table->roots_ee, pairs, worker);
+    decide_by_roots(interval, kind, vf ? table->two_roots_vf : table->two_roots_ee, pairs, worker);
+    decide_one_by_one(interval, kind, pairs, worker);
 }
 
 /* The nearest points of lane i at the start. */
@@ -173,7 +173,7 @@ static void load_limits(const swept_interval *interval, cscd_contact_kind kind, 
 
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
 static void decide_proximity(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                             contact_lane *lane) {
+                             contact_worker *worker) {
     const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     proximity_kernel *kernel = kind == CSCD_CONTACT_VF ? table->proximity_vf : table->proximity_ee;
     feature_source source = swept_interval_source(interval);
@@ -189,7 +189,7 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
         for (uint32_t lanes = real & within; lanes != 0; lanes &= lanes - 1) {
             uint32_t at = (uint32_t)__builtin_ctz(lanes);
             elementary_contact contact = nearest_points(interval, kind, pairs->a[i + at], &near, at);
-            add_contact(interval, kind, pairs, i + at, &contact, false, lane);
+            add_contact(interval, kind, pairs, i + at, &contact, false, worker);
         }
         kept = keep_lanes(pairs, i, real & ~within & ~near.apart, kept);
     }
@@ -197,9 +197,9 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
 }
 
 static void test_separations(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                             contact_lane *lane) {
-    lane->separations += pairs->count;
-    decide_proximity(interval, kind, pairs, lane);
+                             contact_worker *worker) {
+    worker->separations += pairs->count;
+    decide_proximity(interval, kind, pairs, worker);
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_contact contact;
@@ -207,16 +207,16 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
         separation limit = pair_separation(interval, kind, pairs->a[i], pairs->b[i]);
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
         if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &limit, &contact, &bounded))
-            add_contact(interval, kind, pairs, i, &contact, bounded, lane);
+            add_contact(interval, kind, pairs, i, &contact, bounded, worker);
     }
 }
 
 /* Finds the pairs that fall below their floors. Those whose floor is 0 must not touch. */
 static void test_floors(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                        contact_lane *lane) {
+                        contact_worker *worker) {
     uint32_t kept = 0;
-    lane->separations += pairs->count;
-    decide_proximity(interval, kind, pairs, lane);
+    worker->separations += pairs->count;
+    decide_proximity(interval, kind, pairs, worker);
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_contact contact;
@@ -225,12 +225,12 @@ static void test_floors(const swept_interval *interval, cscd_contact_kind kind, 
         floor_ladder ladder = {limit.distance, interval->floor_ratio, limit.tolerance / limit.distance};
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
         floor_verdict verdict = separation_floor_test(&query, kind, &ladder, &contact, &bounded);
-        if (verdict == FLOOR_BROKEN) add_contact(interval, kind, pairs, i, &contact, bounded, lane);
+        if (verdict == FLOOR_BROKEN) add_contact(interval, kind, pairs, i, &contact, bounded, worker);
         if (verdict == FLOOR_NONE) kept = keep_lanes(pairs, i, 1, kept);
     }
     pairs->count = kept;
-    lane->separations -= kept;
-    decide_by_levels(interval, kind, pairs, lane);
+    worker->separations -= kept;
+    decide_by_levels(interval, kind, pairs, worker);
 }
 
 /* Pairs that have to stay apart by a distance go to the separations; what is left must not touch. */
@@ -250,33 +250,33 @@ static void split_by_distance(const swept_interval *interval, cscd_contact_kind 
 }
 
 static void decide_with_distance(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                                 contact_lane *lane) {
+                                 contact_worker *worker) {
     if (interval->floor_ratio > 0.0)
-        test_floors(interval, kind, pairs, lane);
+        test_floors(interval, kind, pairs, worker);
     else
-        test_separations(interval, kind, pairs, lane);
+        test_separations(interval, kind, pairs, worker);
 }
 
 static void decide_by_pair(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                           contact_lane *lane) {
+                           contact_worker *worker) {
     feature_list list;
     split_by_distance(interval, kind, pairs, &list);
     feature_pairs separations = {list.a, list.b, list.count};
-    decide_with_distance(interval, kind, &separations, lane);
-    decide_by_levels(interval, kind, pairs, lane);
+    decide_with_distance(interval, kind, &separations, worker);
+    decide_by_levels(interval, kind, pairs, worker);
 }
 
-void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_lane *lane) {
-    feature_list *list = &lane->queue[kind];
+void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_worker *worker) {
+    feature_list *list = &worker->queue[kind];
     feature_pairs pairs = {list->a, list->b, list->count};
     assert(list->count <= FEATURE_LIST_CAPACITY); /* kernels fill up behind it */
     if (interval->collecting)
-        contact_lane_add_candidates(interval->mesh->context, lane, kind, list);
+        contact_worker_add_candidates(interval->mesh->context, worker, kind, list);
     else if (interval->thick)
-        decide_by_pair(interval, kind, &pairs, lane);
+        decide_by_pair(interval, kind, &pairs, worker);
     else if (interval->limit.distance > 0.0)
-        decide_with_distance(interval, kind, &pairs, lane);
+        decide_with_distance(interval, kind, &pairs, worker);
     else
-        decide_by_levels(interval, kind, &pairs, lane);
+        decide_by_levels(interval, kind, &pairs, worker);
     list->count = 0;
 }

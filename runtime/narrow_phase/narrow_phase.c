@@ -8,9 +8,9 @@
 enum { PAIRS_AT_ONCE = 256 };
 
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
-                          contact_lane *lane) {
-    feature_list *list = &lane->queue[CSCD_CONTACT_VF];
-    if (feature_list_full(list)) feature_queue_decide(interval, CSCD_CONTACT_VF, lane);
+                          contact_worker *worker) {
+    feature_list *list = &worker->queue[CSCD_CONTACT_VF];
+    if (feature_list_full(list)) feature_queue_decide(interval, CSCD_CONTACT_VF, worker);
     list->count = feature_list_put(list, list->count, vertex, triangle, 1);
 }
 
@@ -24,27 +24,27 @@ static uint32_t larger_of(uint32_t a, uint32_t b) {
 
 /* Feature a is the edge of the smaller number, whichever way the pair was found: the test's rounding, and so
  * its result, never depends on the traversal. */
-void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
-    feature_list *list = &lane->queue[CSCD_CONTACT_EE];
-    if (feature_list_full(list)) feature_queue_decide(interval, CSCD_CONTACT_EE, lane);
+void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_worker *worker) {
+    feature_list *list = &worker->queue[CSCD_CONTACT_EE];
+    if (feature_list_full(list)) feature_queue_decide(interval, CSCD_CONTACT_EE, worker);
     list->count = feature_list_put(list, list->count, smaller_of(a, b), larger_of(a, b), 1);
 }
 
-void narrow_phase_finish(const swept_interval *interval, contact_lane *lane) {
-    feature_queue_decide(interval, CSCD_CONTACT_VF, lane);
-    feature_queue_decide(interval, CSCD_CONTACT_EE, lane);
+void narrow_phase_finish(const swept_interval *interval, contact_worker *worker) {
+    feature_queue_decide(interval, CSCD_CONTACT_VF, worker);
+    feature_queue_decide(interval, CSCD_CONTACT_EE, worker);
 }
 
 /* ---- from pairs of triangles to the queue ------------------------------------------------------------ */
 
 static void queue_features(const swept_interval *interval, triangle_pair pair, uint32_t features,
-                           contact_lane *lane) {
+                           contact_worker *worker) {
     const cscd_mesh *mesh = interval->mesh;
-    feature_list *vf = &lane->queue[CSCD_CONTACT_VF], *ee = &lane->queue[CSCD_CONTACT_EE];
-    if (feature_list_full(vf)) feature_queue_decide(interval, CSCD_CONTACT_VF, lane);
-    if (feature_list_full(ee)) feature_queue_decide(interval, CSCD_CONTACT_EE, lane);
+    feature_list *vf = &worker->queue[CSCD_CONTACT_VF], *ee = &worker->queue[CSCD_CONTACT_EE];
+    if (feature_list_full(vf)) feature_queue_decide(interval, CSCD_CONTACT_VF, worker);
+    if (feature_list_full(ee)) feature_queue_decide(interval, CSCD_CONTACT_EE, worker);
     for (; features != 0; features &= features - 1) {
-        lane->feature_pairs++;
+        worker->feature_pairs++;
         int bit = __builtin_ctz(features), edges = bit - FEATURE_EDGES;
         if (edges >= 0) {
             uint32_t a = mesh->triangle_edges[pair.a][edges / 3], b = mesh->triangle_edges[pair.b][edges % 3];
@@ -98,20 +98,20 @@ static void filter_features(const swept_interval *interval, bool settled, chosen
     chosen->count = kept;
 }
 
-static void queue_pairs(const swept_interval *interval, const chosen_pairs *chosen, contact_lane *lane) {
+static void queue_pairs(const swept_interval *interval, const chosen_pairs *chosen, contact_worker *worker) {
     for (uint32_t i = 0; i < chosen->count; i++)
-        queue_features(interval, chosen->pairs[i], chosen->features[i], lane);
+        queue_features(interval, chosen->pairs[i], chosen->features[i], worker);
 }
 
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
-                      contact_lane *lane) {
+                      contact_worker *worker) {
     chosen_pairs settled, open;
     choose_pairs(interval, slots, count, &settled, &open);
     filter_features(interval, true, &settled);
     filter_features(interval, false, &open);
     representatives_select(interval, open.pairs, open.count, open.features);
-    queue_pairs(interval, &settled, lane);
-    queue_pairs(interval, &open, lane);
+    queue_pairs(interval, &settled, worker);
+    queue_pairs(interval, &open, worker);
 }
 
 /* Counts the pairs of components that are culled with themselves. */
@@ -126,10 +126,10 @@ static void count_kept(const swept_interval *interval, const triangle_pair *slot
 }
 
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
-                       contact_lane *lane) {
-    if (interval->culling != NULL && lane->kept != NULL) count_kept(interval, pairs, count, lane->kept);
-    for (uint32_t i = 0; i < count && !lane->out_of_memory; i += PAIRS_AT_ONCE)
-        test_some(interval, pairs + i, count - i < PAIRS_AT_ONCE ? count - i : PAIRS_AT_ONCE, lane);
+                       contact_worker *worker) {
+    if (interval->culling != NULL && worker->kept != NULL) count_kept(interval, pairs, count, worker->kept);
+    for (uint32_t i = 0; i < count && !worker->out_of_memory; i += PAIRS_AT_ONCE)
+        test_some(interval, pairs + i, count - i < PAIRS_AT_ONCE ? count - i : PAIRS_AT_ONCE, worker);
 }
 
 /* ---- orphan pairs ----------------------------------------------------------------------------------------- */
@@ -148,31 +148,31 @@ static bool left_to_others(const swept_interval *interval, uint32_t component) {
            !pair_filter_admits_components(&interval->filter, component, component);
 }
 
-static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2], contact_worker *worker) {
     if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_VF, pair[0], pair[1])) return;
     if (left_to_others(interval, interval->mesh->triangle_components[pair[1]])) return;
     if (parted_by_directions(interval, CSCD_CONTACT_VF, pair[0], pair[1])) return;
-    lane->feature_pairs++;
-    narrow_phase_test_vf(interval, pair[0], pair[1], lane);
+    worker->feature_pairs++;
+    narrow_phase_test_vf(interval, pair[0], pair[1], worker);
 }
 
-static void test_orphan_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+static void test_orphan_ee(const swept_interval *interval, const uint32_t pair[2], contact_worker *worker) {
     if (!pair_filter_admits_features(&interval->filter, CSCD_CONTACT_EE, pair[0], pair[1])) return;
     if (left_to_others(interval, edge_component(interval->mesh, pair[0]))) return;
     if (parted_by_directions(interval, CSCD_CONTACT_EE, pair[0], pair[1])) return;
-    lane->feature_pairs++;
-    narrow_phase_test_ee(interval, pair[0], pair[1], lane);
+    worker->feature_pairs++;
+    narrow_phase_test_ee(interval, pair[0], pair[1], worker);
 }
 
-/* The cursor counts the pairs of the lane, those of vertices and faces first. */
+/* The cursor counts the pairs of the worker, those of vertices and faces first. */
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
-                                    uint32_t index, uint32_t stride, contact_lane *lane) {
+                                    uint32_t index, uint32_t stride, contact_worker *worker) {
     size_t all = orphans->vf_count + orphans->ee_count;
-    for (size_t i = index + (size_t)lane->cursor * stride; i < all; i += stride) {
+    for (size_t i = index + (size_t)worker->cursor * stride; i < all; i += stride) {
         if (i < orphans->vf_count)
-            test_orphan_vf(interval, orphans->vf[i], lane);
+            test_orphan_vf(interval, orphans->vf[i], worker);
         else
-            test_orphan_ee(interval, orphans->ee[i - orphans->vf_count], lane);
-        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
+            test_orphan_ee(interval, orphans->ee[i - orphans->vf_count], worker);
+        if (contact_worker_suspend(worker, worker->cursor + 1)) return;
     }
 }

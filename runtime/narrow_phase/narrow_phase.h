@@ -1,7 +1,7 @@
 /* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
 #pragma once
 
-#include "runtime/narrow_phase/contact_lane.h"
+#include "runtime/narrow_phase/contact_worker.h"
 #include "runtime/narrow_phase/representatives.h"
 #include "runtime/narrow_phase/swept_interval.h"
 
@@ -33,30 +33,30 @@ void orphan_pairs_free(cscd_context *context, orphan_pairs *pairs);
 
 /* ---- tests --------------------------------------------------------------------------------------------- */
 
-/* These put pairs in the lane's queue, which is decided when it is full, and by: */
-void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
+/* These put pairs in the worker's queue, which is decided when it is full, and by: */
+void narrow_phase_finish(const swept_interval *interval, contact_worker *worker);
 
 /* All pairs of features that pairs of triangles, given by their slots, answer for, that share no vertex and
  * that may touch by their volumes. */
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
-                       contact_lane *lane);
+                       contact_worker *worker);
 
-/* The orphan pairs index, index + stride, and so on from the lane's cursor on, but those that a direction
- * parts. The lane may be suspended on the way. */
+/* The orphan pairs index, index + stride, and so on from the worker's cursor on, but those that a direction
+ * parts. The worker may be suspended on the way. */
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
-                                    uint32_t index, uint32_t stride, contact_lane *lane);
+                                    uint32_t index, uint32_t stride, contact_worker *worker);
 
 /* One pair of features without a common vertex: a contact where they touch, or come within the limit's
  * distance. */
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
-                          contact_lane *lane);
-void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane);
+                          contact_worker *worker);
+void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_worker *worker);
 
 /* Tests every pair of features that share no vertex: the reference that the other methods must equal. Runs
- * the share lane_index of lane_count of all pairs. Uses no tree: pairs are rejected by their own boxes in
+ * the share worker_index of worker_count of all pairs. Uses no tree: pairs are rejected by their own boxes in
  * double, which loses none, and by the test of the pair. */
-void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
-                      contact_lane *lane);
+void brute_force_test(const swept_interval *interval, uint32_t worker_index, uint32_t worker_count,
+                      contact_worker *worker);
 
 /* ---- searches of their own ----------------------------------------------------------------------------- */
 
@@ -81,6 +81,6 @@ typedef struct own_search {
     cscd_status (*find_pairs)(void *state, const own_interval *interval, cscd_timings *timings,
                               cscd_counters *counters);
 
-    /* Tests them, from the lane's cursor on; a full lane is suspended. */
-    void (*test_pairs)(void *state, const own_interval *interval, contact_lane *lane);
+    /* Tests them, from the worker's cursor on; a full worker is suspended. */
+    void (*test_pairs)(void *state, const own_interval *interval, contact_worker *worker);
 } own_search;

@@ -41,36 +41,36 @@ static void name_features(uint32_t count, pair_features *out) {
 }
 
 static void queue_pairs(const swept_interval *interval, cscd_contact_kind kind, uint32_t count,
-                        contact_lane *lane) {
+                        contact_worker *worker) {
     for (uint32_t i = 0; i < count; i++) {
         if (kind == CSCD_CONTACT_VF)
-            narrow_phase_test_vf(interval, 4 * i, i, lane);
+            narrow_phase_test_vf(interval, 4 * i, i, worker);
         else
-            narrow_phase_test_ee(interval, 2 * i, 2 * i + 1, lane);
+            narrow_phase_test_ee(interval, 2 * i, 2 * i + 1, worker);
     }
-    narrow_phase_finish(interval, lane);
+    narrow_phase_finish(interval, worker);
 }
 
-/* The lane has room for a contact of each pair, so it never asks the allocator for more. */
-_Static_assert((int)POINT_PAIRS_MAX <= (int)LANE_FIRST_BLOCK,
-               "the contacts of all pairs are one block of a lane");
+/* The worker has room for a contact of each pair, so it never asks the allocator for more. */
+_Static_assert((int)POINT_PAIRS_MAX <= (int)WORKER_FIRST_BLOCK,
+               "the contacts of all pairs are one block of a worker");
 /* Tests up to POINT_PAIRS_MAX pairs on the calling thread, without an allocation: for contact or, with a
  * distance above 0, for coming within it. Every bit is that of a step over a mesh that holds these features. */
 static void point_pairs_test(cscd_context *context, const point_pairs *pairs, separation limit,
                              point_pair_found *found, void *user) {
     pair_features features;
     cscd_contact contacts[POINT_PAIRS_MAX];
-    contact_lane lane;
+    contact_worker worker;
     uint32_t count = (uint32_t)pairs->count;
     assert(pairs->count <= POINT_PAIRS_MAX);
     name_features(count, &features);
-    lane.blocks[0] = contacts;
-    lane.block_count = 1;
-    contact_lane_reset(&lane);
+    worker.blocks[0] = contacts;
+    worker.block_count = 1;
+    contact_worker_reset(&worker);
     cscd_mesh mesh = {.context = context, .triangles = features.triangles, .edges = features.edges};
     swept_interval interval = {.mesh = &mesh, .x0 = pairs->x0, .x1 = pairs->x1, .limit = limit};
-    queue_pairs(&interval, pairs->kind, count, &lane);
-    for (size_t i = 0; i < lane.count; i++)
+    queue_pairs(&interval, pairs->kind, count, &worker);
+    for (size_t i = 0; i < worker.count; i++)
         found(user, contacts[i].a / (pairs->kind == CSCD_CONTACT_VF ? 4 : 2), &contacts[i]);
 }
 

@@ -12,7 +12,7 @@
 
 struct representatives;
 
-/* All lanes read it, and none writes to it. */
+/* All workers read it, and none writes to it. */
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
@@ -29,7 +29,7 @@ typedef struct swept_interval {
     double tolerance;       /* of these distances, as a share of them; 0: the default */
     double beyond;          /* volumes are compared within so much more than the pairs' distances */
     double floor_ratio;     /* above 0: pairs that start nearer than they should have a floor instead */
-    bool collecting;        /* pairs of features become the lanes' candidates instead of being tested */
+    bool collecting;        /* pairs of features become the workers' candidates instead of being tested */
 } swept_interval;
 
 /* Returns the part of an interval that the kernels read. */

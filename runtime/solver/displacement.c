@@ -409,9 +409,9 @@ static void taint_left_out(cscd_detector *d) {
                   d->interval.earliest,
                   INFINITY};
     memset(d->interval.closes, 0, d->mesh->component_count * sizeof *d->interval.closes);
-    for (uint32_t i = 0; exclusions_any(&d->config.exclusions) && i < s->traversal.lane_count; i++) {
-        for (size_t j = 0; j < s->lanes[i].count; j++) {
-            const cscd_contact *near = contact_lane_at(&s->lanes[i], j);
+    for (uint32_t i = 0; exclusions_any(&d->config.exclusions) && i < s->traversal.worker_count; i++) {
+        for (size_t j = 0; j < s->workers[i].count; j++) {
+            const cscd_contact *near = contact_worker_at(&s->workers[i], j);
             if (exclusions_cover(&d->config.exclusions, near->kind, near->a, near->b, NULL))
                 tainting_look(&t, near);
         }

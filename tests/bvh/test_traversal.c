@@ -41,9 +41,10 @@ static void traverse_but(const bvh_rig *r, traversal_pass pass, bool skip_adjace
     traversal_begin(&t, &r->bvh, pass);
     for (bool more = true; more;) {
         assert_int_equal(traversal_round(&t, &more), CSCD_OK);
-        for (uint32_t i = 0; i < t.lane_count; i++) {
-            assert_true(t.lanes[i].pair_count <= TRAVERSAL_BATCH_SIZE);
-            for (uint32_t k = 0; k < t.lanes[i].pair_count; k++) add_pair(&r->bvh, t.lanes[i].pairs[k], out);
+        for (uint32_t i = 0; i < t.worker_count; i++) {
+            assert_true(t.workers[i].pair_count <= TRAVERSAL_BATCH_SIZE);
+            for (uint32_t k = 0; k < t.workers[i].pair_count; k++)
+                add_pair(&r->bvh, t.workers[i].pairs[k], out);
         }
     }
     out->boxes_tested = traversal_boxes_tested(&t);
@@ -292,25 +293,25 @@ TEST(nothing_active_is_over_at_once) {
         assert_int_equal(traversal_create(r.context, &t), CSCD_OK);
         assert_true(bvh_set_active(&r.bvh, active));
         traversal_begin(&t, &r.bvh, TRAVERSAL_KEPT);
-        assert_int_equal(t.lanes[0].stack_count, 1);
-        r.bvh.kernels->search(&t, &t.lanes[0], 1);
-        assert_int_equal(t.lanes[0].stack_count + t.lanes[0].pair_count, 0);
+        assert_int_equal(t.workers[0].stack_count, 1);
+        r.bvh.kernels->search(&t, &t.workers[0], 1);
+        assert_int_equal(t.workers[0].stack_count + t.workers[0].pair_count, 0);
         assert_int_equal(traversal_boxes_tested(&t), 0);
         traversal_destroy(&t);
         bvh_rig_destroy(&r);
     }
 }
 
-/* Whichever lane runs out of memory. */
-TEST(no_lane_fails_unnoticed) {
+/* Whichever worker runs out of memory. */
+TEST(no_worker_fails_unnoticed) {
     bvh_rig r;
     traversal t;
     scene_make(SCENE_TWO_SPHERES, 1, &shape);
     assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 3, BOX_AXES, 1}, &r));
     assert_int_equal(traversal_create(r.context, &t), CSCD_OK);
-    assert_int_equal(t.lane_count, 3);
-    for (uint32_t lane = 0; lane < t.lane_count; lane++) {
-        for (uint32_t i = 0; i < t.lane_count; i++) t.lanes[i].out_of_memory = i == lane;
+    assert_int_equal(t.worker_count, 3);
+    for (uint32_t worker = 0; worker < t.worker_count; worker++) {
+        for (uint32_t i = 0; i < t.worker_count; i++) t.workers[i].out_of_memory = i == worker;
         assert_int_equal(traversal_status(&t), CSCD_OUT_OF_MEMORY);
     }
     traversal_destroy(&t);

@@ -173,7 +173,7 @@ TEST(rebuilding_goes_on) {
     assert_true(found.rebuilds > 0);
 }
 
-/* The tube is large enough that lanes share its trees, and it bends until it touches itself. */
+/* The tube is large enough that workers share its trees, and it bends until it touches itself. */
 TEST(large_meshes_go_on) {
     for (uint32_t threads = 1; threads < 4; threads += 2) {
         workload_tube(&q, 36, 18, 5);

@@ -163,7 +163,7 @@ TEST(culling_follows_the_motion) {
     rig_destroy(&r);
 }
 
-/* A torus of so many triangles that lanes share them; it is pressed flat and bent. */
+/* A torus of so many triangles that workers share them; it is pressed flat and bent. */
 static void make_large_scene(void) {
     static const double origin[3] = {0, 0, 0};
     scene_clear(&s);
@@ -176,7 +176,7 @@ static void make_large_scene(void) {
     }
 }
 
-/* The choice rests on counts, which the lanes share. */
+/* The choice rests on counts, which the workers share. */
 TEST(counters_do_not_depend_on_threads) {
     for (uint32_t seed = 0; seed < SCENES / 4; seed++) {
         random_stream random = stream_start(seed);

@@ -1,4 +1,4 @@
-/* The contacts of all lanes form one list, sorted by time and names, without those that the caller
+/* The contacts of all workers form one list, sorted by time and names, without those that the caller
  * ignores; long lists are moved, not copied, and are the same. */
 #include "runtime/detector/detector.h"
 #include "tests/support/rig.h"
@@ -11,16 +11,16 @@ static scene shape; /* large; one test at a time */
 static const double times[] = {1.0, 0.25, 0.0, -0.0, 0.25, 1.0, 0.25, 0.0};
 enum { CONTACT_COUNT = sizeof times / sizeof *times };
 
-/* Makes contacts of two kinds, some at equal times, and deals them out to all lanes. */
-static void fill_lanes(cscd_context *context, search_space *s) {
-    for (uint32_t i = 0; i < s->traversal.lane_count; i++) contact_lane_reset(&s->lanes[i]);
+/* Makes contacts of two kinds, some at equal times, and deals them out to all workers. */
+static void fill_workers(cscd_context *context, search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) contact_worker_reset(&s->workers[i]);
     for (uint32_t i = 0; i < CONTACT_COUNT; i++) {
         elementary_contact hit = {.toi = times[i]};
         cscd_contact_kind kind = i % 3 == 0 ? CSCD_CONTACT_EE : CSCD_CONTACT_VF;
-        contact_lane_add(context, &s->lanes[i % s->traversal.lane_count], kind, (7 * i) % 5, 20 - i, &hit,
-                         i == 5);
+        contact_worker_add(context, &s->workers[i % s->traversal.worker_count], kind, (7 * i) % 5, 20 - i,
+                           &hit, i == 5);
     }
-    s->traversal.busy_lanes = s->traversal.lane_count;
+    s->traversal.busy_workers = s->traversal.worker_count;
 }
 
 static bool in_order(const cscd_contact *a, const cscd_contact *b) {
@@ -55,14 +55,14 @@ static void collection_end(collection *c) {
 static cscd_contacts collect_contacts(collection *c) {
     cscd_contacts found = {.count = 0};
     c->counters = (cscd_counters){.vf = 0};
-    fill_lanes(c->rig.context, &c->space);
-    c->space.lanes[0].feature_pairs = 3;
-    c->space.lanes[0].decided[ELEMENTARY_SIGNS] = 2;
+    fill_workers(c->rig.context, &c->space);
+    c->space.workers[0].feature_pairs = 3;
+    c->space.workers[0].decided[ELEMENTARY_SIGNS] = 2;
     expect_ok(contact_list_collect(&c->space, &c->excluded, &c->buffer, &c->counters, &found));
     return found;
 }
 
-TEST(lists_are_sorted_for_any_lane_count) {
+TEST(lists_are_sorted_for_any_worker_count) {
     static cscd_contact expected[CONTACT_COUNT];
     const cscd_detector_options options = cscd_detector_defaults();
     scene_make(SCENE_SPIKE, 1, &shape);
@@ -106,27 +106,27 @@ TEST(dropped_contacts_are_not_seen_any_more) {
     scene_make(SCENE_SPIKE, 1, &shape);
     rig r = rig_create(&shape, 1, NULL);
     cscd_detector *d = r.detector;
-    contact_lane *lane = &d->space.lanes[0];
-    contact_lane_reset(lane);
+    contact_worker *worker = &d->space.workers[0];
+    contact_worker_reset(worker);
     for (size_t i = 0; i < sizeof tois / sizeof *tois; i++) {
         elementary_contact hit = {.toi = tois[i]};
-        contact_lane_add(r.context, lane, CSCD_CONTACT_VF, r.mesh->triangles[0][0], 1, &hit, false);
+        contact_worker_add(r.context, worker, CSCD_CONTACT_VF, r.mesh->triangles[0][0], 1, &hit, false);
     }
     d->interval.contacts_seen[0] = 0;
     earliest_begin(&d->interval);
     earliest_note(&d->interval);
     d->interval.contacts_seen[0] = 2;
     earliest_drop_later(&d->interval, 0.05);
-    assert_int_equal(lane->count, 2);
-    assert_true(contact_lane_at(lane, 0)->toi == 0.1 && contact_lane_at(lane, 1)->toi == 0.14);
+    assert_int_equal(worker->count, 2);
+    assert_true(contact_worker_at(worker, 0)->toi == 0.1 && contact_worker_at(worker, 1)->toi == 0.14);
     assert_int_equal(d->interval.contacts_seen[0], 1);
-    contact_lane_reset(lane);
+    contact_worker_reset(worker);
     rig_destroy(&r);
 }
 
 /* ---- long lists ---------------------------------------------------------------------------------------- */
 
-TEST(lanes_of_long_lists_give_back_their_memory) {
+TEST(workers_of_long_lists_give_back_their_memory) {
     const cscd_detector_options options = cscd_detector_defaults();
     scene_make(SCENE_SPIKE, 1, &shape);
     for (uint32_t threads = 1; threads <= 4; threads++) {
@@ -140,8 +140,8 @@ TEST(lanes_of_long_lists_give_back_their_memory) {
             assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
             assert_memory_equal(&moving.counters, &copying.counters, sizeof moving.counters);
             assert_true(moving.buffer.keys == NULL && moving.buffer.spare_keys == NULL);
-            for (uint32_t i = 0; i < moving.space.traversal.lane_count; i++)
-                assert_true(moving.space.lanes[i].count == 0 && moving.space.lanes[i].block_count == 0);
+            for (uint32_t i = 0; i < moving.space.traversal.worker_count; i++)
+                assert_true(moving.space.workers[i].count == 0 && moving.space.workers[i].block_count == 0);
         }
         collection_end(&copying);
         collection_end(&moving);

@@ -50,7 +50,7 @@ static void pair_end(capped_pair *p) {
     }
 }
 
-/* beside: so much room have lanes beside their share. With little they are suspended often. */
+/* beside: so much room have workers beside their share. With little they are suspended often. */
 static void set_cap(capped_pair *p, size_t longest, size_t beside) {
     expect_ok(cscd_detector_set_longest_list(p->capped, longest));
     p->capped->interval.cap.beside = beside;
@@ -221,8 +221,8 @@ TEST(lists_are_counted_without_being_kept) {
     assert_true(sum[0] > 200 && sum[1] > 10000);
 }
 
-/* Lanes are suspended in the middle of a pass, and contacts that have left them taint as others. */
-TEST(lanes_are_suspended_in_mid_pass) {
+/* Workers are suspended in the middle of a pass, and contacts that have left them taint as others. */
+TEST(workers_are_suspended_in_mid_pass) {
     const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_KMEANS};
     size_t sum[2] = {0};
     for (int i = PACED(0, 3); i < 9; i += PACED(1, 2)) {
@@ -266,7 +266,7 @@ TEST(lines_have_the_cap_too) {
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
 
-/* A long list takes no more memory under a cap than the cap and the lanes' own room call for. */
+/* A long list takes no more memory under a cap than the cap and the workers' own room call for. */
 TEST(memory_is_bounded) {
     for (uint32_t threads = 1; threads <= 3; threads += 2) {
         capped_pair p = {.ignores = threads == 1};

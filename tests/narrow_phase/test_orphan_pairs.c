@@ -286,12 +286,12 @@ TEST(too_many_in_all_tasks) {
     }
 }
 
-/* Lanes that are suspended after each pair go on with the next: between them they test each orphan pair once. */
-TEST(suspended_lanes_leave_none_out) {
+/* Workers that are suspended after each pair go on with the next: between them they test each orphan pair once. */
+TEST(suspended_workers_leave_none_out) {
     enum { SHARES = 3 };
-    static contact_lane lane;
+    static contact_worker worker;
     static const double at_rest[VERTICES_MAX * 3];
-    const feature_list *vf = &lane.queue[CSCD_CONTACT_VF], *ee = &lane.queue[CSCD_CONTACT_EE];
+    const feature_list *vf = &worker.queue[CSCD_CONTACT_VF], *ee = &worker.queue[CSCD_CONTACT_EE];
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     orphan_pairs pairs;
@@ -305,9 +305,9 @@ TEST(suspended_lanes_leave_none_out) {
     assert_int_equal(orphan_pairs_create(mesh, &pairs, &too_many), CSCD_OK);
     const swept_interval interval = {.mesh = mesh, .x0 = at_rest, .x1 = at_rest, .filter = {.mesh = mesh}};
     for (uint32_t i = 0; i < SHARES; i++) {
-        contact_lane_reset(&lane);
-        for (lane.limit = 0; i + lane.cursor * SHARES < pairs.vf_count + pairs.ee_count;)
-            narrow_phase_test_orphan_pairs(&interval, &pairs, i, SHARES, &lane);
+        contact_worker_reset(&worker);
+        for (worker.limit = 0; i + worker.cursor * SHARES < pairs.vf_count + pairs.ee_count;)
+            narrow_phase_test_orphan_pairs(&interval, &pairs, i, SHARES, &worker);
         for (uint32_t k = 0; k < vf->count; k++)
             queued[0] += count_in(pairs.vf, pairs.vf_count, vf->a[k], vf->b[k]);
         for (uint32_t k = 0; k < ee->count; k++)

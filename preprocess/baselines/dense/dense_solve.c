@@ -47,9 +47,9 @@ static int blas_threads_before;
 static const size_t blas_buffer_size = (size_t)128 << 20;
 static size_t buffers_wanted, buffers_had;
 
-static bool buffers_fit(size_t lanes) {
-    if (buffers_wanted + lanes <= buffers_had) return true;
-    size_t more = buffers_wanted + lanes - buffers_had;
+static bool buffers_fit(size_t workers) {
+    if (buffers_wanted + workers <= buffers_had) return true;
+    size_t more = buffers_wanted + workers - buffers_had;
     void *room =
         mmap(NULL, more * blas_buffer_size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (room == MAP_FAILED) return false;
@@ -58,12 +58,12 @@ static bool buffers_fit(size_t lanes) {
     return true;
 }
 
-/* lanes: the number of threads that will compute at a time. False: there is no room for their buffers. */
-static bool begin_single_thread(size_t lanes) {
+/* workers: the number of threads that will compute at a time. False: there is no room for their buffers. */
+static bool begin_single_thread(size_t workers) {
     if (openblas_set_num_threads == NULL || openblas_get_num_threads == NULL) return true;
     pthread_mutex_lock(&blas_lock);
-    bool fit = buffers_fit(lanes);
-    if (fit) buffers_wanted += lanes;
+    bool fit = buffers_fit(workers);
+    if (fit) buffers_wanted += workers;
     if (fit && blas_users++ == 0) {
         blas_threads_before = openblas_get_num_threads();
         openblas_set_num_threads(1);
@@ -72,10 +72,10 @@ static bool begin_single_thread(size_t lanes) {
     return fit;
 }
 
-static void end_single_thread(size_t lanes) {
+static void end_single_thread(size_t workers) {
     if (openblas_set_num_threads == NULL || openblas_get_num_threads == NULL) return;
     pthread_mutex_lock(&blas_lock);
-    buffers_wanted -= lanes;
+    buffers_wanted -= workers;
     if (--blas_users == 0) openblas_set_num_threads(blas_threads_before);
     pthread_mutex_unlock(&blas_lock);
 }
@@ -172,23 +172,23 @@ static cscd_status factor_panels(factoring *f) {
     return CSCD_OK;
 }
 
-static cscd_status fail_without_room(const dense_host *host, uint32_t lanes) {
+static cscd_status fail_without_room(const dense_host *host, uint32_t workers) {
     char sentence[256];
     snprintf(
         sentence, sizeof sentence,
         "charge: OpenBLAS needs %zu MiB of address space for buffers, one for each of %u threads, and a limit "
         "(ulimit -v) leaves less; raise it, or use fewer threads",
-        lanes * (blas_buffer_size >> 20), (unsigned)lanes);
+        workers * (blas_buffer_size >> 20), (unsigned)workers);
     host->explain(host->context, CSCD_OUT_OF_MEMORY, sentence);
     return CSCD_OUT_OF_MEMORY;
 }
 
 cscd_status dense_factor(const dense_host *host, double *matrix, uint32_t count, int32_t *pivots) {
     factoring f = {.host = host, .matrix = matrix, .pivots = pivots, .count = count};
-    uint32_t lanes = smaller_count(host->threads, panels_of(count));
-    if (!begin_single_thread(lanes)) return fail_without_room(host, lanes);
+    uint32_t workers = smaller_count(host->threads, panels_of(count));
+    if (!begin_single_thread(workers)) return fail_without_room(host, workers);
     cscd_status status = factor_panels(&f);
-    end_single_thread(lanes);
+    end_single_thread(workers);
     return status;
 }
 
