@@ -118,7 +118,7 @@ COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),too
                      tool/jobs/*.c tool/export/*.c tool/report/*.c))
 COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check replay render) $(if $(HAS_SENSORS),sensors/tool/*.c))
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
-SUPPORT_SOURCES := $(filter-out $(if $(WINDOWS),,tests/support/tool/tool_process.c) $(if $(HAS_SENSORS),,tests/support/sensors/%),$(wildcard tests/support/*.c tests/support/*/*.c))
+SUPPORT_SOURCES := $(filter-out $(if $(HAS_SENSORS),,tests/support/sensors/%),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed. Under sanitizers each

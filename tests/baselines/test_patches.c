@@ -2,7 +2,7 @@
  * which edges the parent has too, which patches are disks, and how the loops of these run. */
 #include "runtime/baselines/patches.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 

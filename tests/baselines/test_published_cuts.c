@@ -3,8 +3,7 @@
 #include "preprocess/baselines/baselines.h"
 #include "preprocess/baselines/published_cuts.h"
 #include "tests/support/calls.h"
-#include "tests/support/models/body_of.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

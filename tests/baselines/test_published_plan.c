@@ -1,8 +1,7 @@
 /* Plans of the published method: the bodies of the thesis, and the steps that are ours. */
 #include "cscd/research.h"
 #include "tests/support/calls.h"
-#include "tests/support/models/body_of.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>

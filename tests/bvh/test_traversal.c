@@ -2,7 +2,6 @@
  * matters. */
 #include "runtime/bvh/bvh_parts.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/bvh/touching.h"
 #include "tests/support/test.h"
 
 #include <math.h>

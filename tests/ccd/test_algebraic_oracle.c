@@ -1,7 +1,6 @@
 /* The oracle of the elementary tests itself: cases with a truth derived by hand, subdivision of time with
  * distances in floating point, and symmetries. */
 #include "tests/support/ccd/algebraic_oracle.h"
-#include "tests/support/ccd/elementary_families.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/feature_distance.h"
 #include "tests/support/test.h"

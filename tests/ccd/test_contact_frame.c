@@ -1,6 +1,6 @@
 /* What is told of a touch, where features are far smaller than their motion, or needles. */
 #include "runtime/ccd/ccd.h"
-#include "tests/support/ccd/queue_test.h"
+#include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The coplanarity cubic: roots of known polynomials, and the error bound against exact integers. */
 #include "runtime/ccd/ccd.h"
 #include "runtime/ccd/elementary_levels.h"
-#include "tests/support/ccd/exact_integer.h"
+#include "tests/support/ccd/wide_numbers.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,5 @@
 /* Contacts that exist exactly, by integer construction, where floating point has the least to hold on to. */
-#include "tests/support/ccd/queue_test.h"
+#include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

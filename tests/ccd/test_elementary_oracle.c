@@ -1,8 +1,8 @@
 /* The elementary tests against the algebraic oracle and against themselves, on queries of every degeneracy.
  */
+#include "tests/support/ccd/algebraic_oracle.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/feature_distance.h"
-#include "tests/support/ccd/oracle_comparison.h"
 #include "tests/support/test.h"
 
 #include <math.h>

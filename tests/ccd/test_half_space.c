@@ -1,7 +1,7 @@
 /* A vertex and a half-space, against integers: verdicts, times, gaps, and floors over many motions. */
 #include "runtime/ccd/ccd.h"
 
-#include "tests/support/ccd/exact_integer.h"
+#include "tests/support/ccd/wide_numbers.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

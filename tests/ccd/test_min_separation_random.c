@@ -1,7 +1,6 @@
 /* Minimum separation on random queries, against dense sampling: no pair lost, no time late, no tolerance
  * broken. */
 #include "tests/support/ccd/separation_check.h"
-#include "tests/support/ccd/separation_families.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* The guesses of roots decide how long an elementary test takes, and not one bit of its answer: our own guesses, those of
  * GSL, wrong ones and none at all give the same contacts, times included. */
+#include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/ccd/queue_test.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"

@@ -2,8 +2,8 @@
  * common plane beside each other. */
 #include "runtime/ccd/elementary_levels.h"
 #include "runtime/ccd/exact.h"
+#include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/ccd/queue_test.h"
 #include "tests/support/test.h"
 
 #include <math.h>

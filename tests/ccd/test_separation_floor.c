@@ -3,7 +3,6 @@
 #include "runtime/ccd/ccd.h"
 #include "src/core/vec3.h"
 #include "tests/support/ccd/separation_check.h"
-#include "tests/support/ccd/separation_families.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

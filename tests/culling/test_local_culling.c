@@ -4,7 +4,7 @@
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
-#include "tests/support/bvh/direction_gap.h"
+#include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/calls.h"
 #include "tests/support/culling/clean_triangles.h"
 #include "tests/support/random.h"

@@ -1,5 +1,5 @@
 /* Bodies of one object: parts that are closed, components, or what labels of their own say. */
-#include "tests/support/intersections/body_measures.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

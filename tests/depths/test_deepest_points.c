@@ -1,6 +1,6 @@
 /* The deepest points of surfaces: by hand where one sees them, else beside samples of the surface and the distance from all
  * triangles. And what has no depth, because surfaces only lie on each other. */
-#include "tests/support/intersections/body_measures.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

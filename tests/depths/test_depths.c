@@ -3,7 +3,7 @@
 #include "runtime/depths/outer_surface.h"
 #include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
-#include "tests/support/intersections/body_measures.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tests/support/variants.h"

@@ -3,7 +3,7 @@
 #include "runtime/detector/detector.h"
 #include "runtime/detector/surface_answers.h"
 #include "tests/support/intersections/answer_lists.h"
-#include "tests/support/intersections/tangles.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/test.h"
 
 #include <string.h>

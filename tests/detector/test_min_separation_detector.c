@@ -5,7 +5,7 @@
 #include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
-#include "tests/support/solver/free_step_check.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

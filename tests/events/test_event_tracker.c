@@ -1,7 +1,6 @@
 /* Events of random recordings are those of comparing everything with everything, whether they are taken at the end or on
  * the way. */
 #include "tests/support/events/recorded_frames.h"
-#include "tests/support/events/recording_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

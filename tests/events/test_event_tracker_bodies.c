@@ -1,5 +1,5 @@
 /* Events of bodies that move, from what a detector finds, are those of comparing everything with everything. */
-#include "tests/support/events/recording_oracle.h"
+#include "tests/support/events/recorded_frames.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* Trackers with mistakes, failing allocations and long recordings. */
 #include "runtime/events/events.h"
 #include "tests/support/calls.h"
-#include "tests/support/events/recording_oracle.h"
+#include "tests/support/events/recorded_frames.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

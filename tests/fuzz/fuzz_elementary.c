@@ -1,8 +1,8 @@
 /* Elementary tests, through the feature queue and on every instruction set of the processor, against the algebraic
  * oracle on random degenerate queries, for as long as asked; prints the queries on which they differ.
  * Usage: fuzz_elementary SECONDS QUERIES SEED vf|ee|both; 0 is no limit. */
+#include "tests/support/ccd/algebraic_oracle.h"
 #include "tests/support/ccd/elementary_generator.h"
-#include "tests/support/ccd/oracle_comparison.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Intersections by kind through the API: all pairs by the oracle, what options ask for, and what is left out. */
 #include "cscd/research.h"
 #include "tests/support/calls.h"
-#include "tests/support/intersections/integer_scene.h"
+#include "tests/support/intersections/kind_oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 #include "tests/support/variants.h"

@@ -4,7 +4,7 @@
 #include "runtime/detector/detector.h"
 #include "tests/support/calls.h"
 #include "tests/support/culling/clean_triangles.h"
-#include "tests/support/intersections/crossing_scene.h"
+#include "tests/support/intersections/answer_lists.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* The first pairs of triangles that intersect are the same for any number of threads, and the search ends there. */
 #include "runtime/detector/detector.h"
 #include "tests/support/calls.h"
-#include "tests/support/intersections/crossing_scene.h"
+#include "tests/support/intersections/answer_lists.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -4,7 +4,7 @@
 #include "cscd/events.h"
 #include "tests/support/calls.h"
 #include "tests/support/intersections/answer_lists.h"
-#include "tests/support/intersections/tangles.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,8 +1,8 @@
 /* Patches: at each of their corners objects wind as often as the patch says, on grids where everything degenerates; and
  * what is buried in scenes that one sees through. */
 #include "runtime/intersections/intersections.h"
-#include "tests/support/bvh/mesh_trees.h"
-#include "tests/support/intersections/traced_scene.h"
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/intersections/grid_scene.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -1,13 +1,116 @@
 /* glTF files when memory fails, and when they are damaged; the frames of an animation take no memory of their own. */
 #include "tests/support/files.h"
-#include "tests/support/io/file_damage.h"
-#include "tests/support/io/gltf_fixture.h"
+#include "tests/support/io/mesh_check.h"
 #include "tests/support/test.h"
 #include "tool/io/animation.h"
 #include "tool/io/io.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- small files --------------------------------------------------------------------------------------- */
+
+/* glTF files are written piece by piece: accessors with their numbers, and the rest as text. */
+
+/* One buffer, its views and its accessors. A zeroed struct is an empty one. */
+typedef struct gltf_fixture {
+    unsigned char bytes[4096];
+    size_t size;
+    int view_count, accessor_count;
+    char views[4096], accessors[4096];
+    char file[16384];
+    size_t file_size;
+} gltf_fixture;
+
+static size_t size_of(int component) {
+    return component <= 5121 ? 1 : component <= 5123 ? 2 : 4;
+}
+
+static void put_number(gltf_fixture *fixture, int component, double number) {
+    const float single_value = (float)number;
+    uint32_t bits = (uint32_t)(int64_t)number;
+    if (component == 5126) memcpy(&bits, &single_value, sizeof bits);
+    assert_true(fixture->size + 4 <= sizeof fixture->bytes);
+    for (size_t i = 0; i < size_of(component); i++)
+        fixture->bytes[fixture->size++] = (unsigned char)(bits >> 8 * i & 0xff);
+}
+
+static void append_text(char *list, size_t room, int count, const char *text) {
+    const size_t used = strlen(list);
+    assert_true(used + strlen(text) + 2 < room);
+    snprintf(list + used, room - used, "%s%s", count > 0 ? "," : "", text);
+}
+
+/* Appends numbers to the buffer in this component type (5120 to 5126) and a view of them; gives the number of the view. */
+static int gltf_fixture_view(gltf_fixture *fixture, int component, size_t count, const double *numbers) {
+    char text[128];
+    snprintf(text, sizeof text, "{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", fixture->size,
+             count * size_of(component));
+    append_text(fixture->views, sizeof fixture->views, fixture->view_count, text);
+    for (size_t i = 0; i < count; i++) put_number(fixture, component, numbers[i]);
+    while (fixture->size % 4 != 0) fixture->bytes[fixture->size++] = 0;
+    return fixture->view_count++;
+}
+
+/* Appends an accessor with this JSON; gives its number. */
+__attribute__((format(printf, 2, 3))) static int gltf_fixture_accessor(gltf_fixture *fixture,
+                                                                       const char *format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    const int size = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert_true(size > 0 && (size_t)size < sizeof text);
+    append_text(fixture->accessors, sizeof fixture->accessors, fixture->accessor_count, text);
+    return fixture->accessor_count++;
+}
+
+/* Both at once: elements of a type such as "VEC3" and so many numbers in all. */
+static int gltf_fixture_array(gltf_fixture *fixture, int component, const char *type, size_t count,
+                              const double *numbers) {
+    const size_t width = strcmp(type, "SCALAR") == 0 ? 1
+                         : strcmp(type, "MAT4") == 0 ? 16
+                                                     : (size_t)(type[3] - '0');
+    const int view = gltf_fixture_view(fixture, component, count, numbers);
+    return gltf_fixture_accessor(fixture,
+                                 "{\"bufferView\":%d,\"componentType\":%d,\"count\":%zu,\"type\":\"%s\"}",
+                                 view, component, count / width, type);
+}
+
+static size_t write_json(gltf_fixture *fixture, char *out, size_t room, const char *rest) {
+    const int size = snprintf(out, room,
+                              "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%zu}],"
+                              "\"bufferViews\":[%s],\"accessors\":[%s],%s}",
+                              fixture->size, fixture->views, fixture->accessors, rest);
+    assert_true(size > 0 && (size_t)size < room);
+    return (size_t)size;
+}
+
+static void put_word(char *at, size_t value) {
+    for (size_t i = 0; i < 4; i++) at[i] = (char)(value >> 8 * i & 0xff);
+}
+
+/* A whole file in the fixture's memory; the rest is the JSON behind "asset": nodes, meshes, scenes. */
+static file_bytes gltf_fixture_glb(gltf_fixture *fixture, const char *rest) {
+    char *file = fixture->file;
+    size_t size = write_json(fixture, file + 20, sizeof fixture->file - 20, rest);
+    while (size % 4 != 0) file[20 + size++] = ' ';
+    const size_t whole = 20 + size + 8 + fixture->size;
+    assert_true(whole <= sizeof fixture->file);
+    memcpy(file, "glTF", 4);
+    put_word(file + 4, 2);
+    put_word(file + 8, whole);
+    put_word(file + 12, size);
+    memcpy(file + 16, "JSON", 4);
+    put_word(file + 20 + size, fixture->size);
+    memcpy(file + 24 + size, "BIN", 4);
+    memcpy(file + 28 + size, fixture->bytes, fixture->size);
+    return (file_bytes){"mesh.glb", file, whole};
+}
+
+/* ---- a rich one ---------------------------------------------------------------------------------------- */
 
 /* A skinned mesh with a target and a material, a mesh of three copies, and a node that moves and grows. */
 #define RICH                                                                                                              \

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "src/mesh/predicates.h"
-#include "tests/support/ccd/exact_integer.h"
+#include "tests/support/ccd/wide_numbers.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

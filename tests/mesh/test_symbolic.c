@@ -1,6 +1,6 @@
 /* The signs of moved points against polynomials that are written out, on grids so small that everything degenerates. */
 #include "src/mesh/predicates.h"
-#include "tests/support/intersections/epsilon_polynomial.h"
+#include "tests/support/intersections/grid_scene.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

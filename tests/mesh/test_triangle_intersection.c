@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "src/mesh/predicates.h"
-#include "tests/support/intersections/feature_oracle.h"
+#include "tests/support/intersections/kind_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -2,7 +2,7 @@
  * the origin or an ulp thick, and bodies that enclose as much the one way as the other. */
 #include "src/core/context.h"
 #include "src/mesh/surface.h"
-#include "tests/support/ccd/exact_integer.h"
+#include "tests/support/ccd/wide_numbers.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"

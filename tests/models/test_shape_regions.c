@@ -2,7 +2,7 @@
  * depends on that of the triangles, so a few small counts suffice. */
 #include "cscd/cscd.h"
 #include "tests/support/calls.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 static void check_counts(body_kind kind, uint32_t triangle_count, uint32_t least, uint32_t most,

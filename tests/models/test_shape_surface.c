@@ -2,8 +2,7 @@
 #include "models/shapes/implicit.h"
 #include "models/shapes/rings.h"
 #include "models/shapes/surface.h"
-#include "tests/support/models/body_of.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -2,7 +2,7 @@
  * similar size, and have the intended shape. */
 #include "cscd/cscd.h"
 #include "tests/support/calls.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>

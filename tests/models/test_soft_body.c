@@ -1,7 +1,7 @@
 /* A soft body obeys the laws of motion: momentum, free fall, contacts with ground and balls, energy. */
 #include "models/common/vec3.h"
 #include "models/softbody/softbody.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"
 

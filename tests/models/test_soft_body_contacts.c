@@ -3,7 +3,7 @@
 #include "models/common/vec3.h"
 #include "models/softbody/softbody.h"
 #include "tests/support/calls.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"
 

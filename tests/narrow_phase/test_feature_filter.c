@@ -1,7 +1,6 @@
 /* The feature_filter against exact gaps: which pairs of features of two triangles it keeps. */
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/bvh/touching.h"
 #include "tests/support/test.h"
 
 #include <math.h>

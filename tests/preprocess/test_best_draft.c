@@ -1,6 +1,6 @@
 /* Method auto compares plans, and keeps the one that leaves the least to test. */
 #include "cscd/research.h"
-#include "tests/support/preprocess/bending.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>

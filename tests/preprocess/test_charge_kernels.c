@@ -3,7 +3,7 @@
 #include "preprocess/baselines/dense/blas_choice.h"
 #include "tests/support/calls.h"
 #include "tests/support/files.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>

@@ -3,7 +3,6 @@
 #include "preprocess/treecode/treecode.h"
 #include "tests/support/calls.h"
 #include "tests/support/preprocess/charge_rig.h"
-#include "tests/support/preprocess/treecode_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* Bodies that no loop alone parts, and those that no crease marks: as many regions as are needed, each of which its point sees. */
 #include "preprocess/preprocess.h"
 #include "preprocess/regions/regions.h"
-#include "tests/support/preprocess/region_check.h"
-#include "tests/support/preprocess/visible_share.h"
+#include "tests/support/models/bodies.h"
+#include "tests/support/preprocess/tiled_body.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* K-means regions: centroids of the vertices, triangles by fewest edges; the same for the same seed. */
 #include "preprocess/regions/regions.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,5 @@
 /* Plans for a motion: what points see in frames counts as what they see at rest. */
-#include "tests/support/preprocess/bending.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>

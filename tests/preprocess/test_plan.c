@@ -3,7 +3,7 @@
 #include "cscd/research.h"
 #include "src/mesh/plan.h"
 #include "tests/support/calls.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ static cscd_plan *plan_by(cscd_method method, uint32_t k) {
     return plan;
 }
 
-static void check_regions(const cscd_plan *plan) {
+static void check_plan_regions(const cscd_plan *plan) {
     uint32_t triangles = 0, count = cscd_plan_region_count(plan);
     for (uint32_t r = 0; r < count; r++) {
         cscd_region region = cscd_plan_region(plan, r);
@@ -60,9 +60,9 @@ TEST(every_method) {
     assert_int_equal(cscd_plan_region_count(kmeans), 3);
     assert_int_equal(cscd_plan_region_count(charge), 2);
     assert_int_equal(cscd_plan_method(charge), CSCD_METHOD_CHARGE);
-    check_regions(single);
-    check_regions(kmeans);
-    check_regions(charge);
+    check_plan_regions(single);
+    check_plan_regions(kmeans);
+    check_plan_regions(charge);
     assert_true(cscd_plan_capacitance(charge, 0) > 0.5 && cscd_plan_capacitance(charge, 0) < 4.6);
     assert_true(cscd_plan_capacitance(single, 0) == 0.0 && cscd_plan_triangle_charge(single, 0) == 0.0);
     double sum = 0.0;

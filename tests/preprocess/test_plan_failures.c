@@ -2,7 +2,7 @@
  * once, and sizes near the limits of coordinates change nothing. */
 #include "src/core/context.h"
 #include "tests/support/calls.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>

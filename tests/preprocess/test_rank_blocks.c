@@ -1,7 +1,6 @@
 /* Charges of fans, combs and other shapes of long triangles: those of the dense system, in memory that grows with the triangles. */
 #include "tests/support/calls.h"
 #include "tests/support/preprocess/charge_rig.h"
-#include "tests/support/preprocess/treecode_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

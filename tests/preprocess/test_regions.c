@@ -3,8 +3,8 @@
 #include "preprocess/regions/regions.h"
 #include "src/mesh/surface.h"
 #include "tests/support/calls.h"
-#include "tests/support/preprocess/region_check.h"
-#include "tests/support/preprocess/visible_share.h"
+#include "tests/support/models/bodies.h"
+#include "tests/support/preprocess/tiled_body.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* Plans of bodies that are soft in places: borders run there, and what lies beyond has a point of its own. */
 #include "preprocess/regions/tiles.h"
 #include "src/mesh/surface.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* The treecode against sums over all triangles: on even meshes, on slivers, and where large triangles lie beside small ones. */
-#include "tests/support/preprocess/treecode_rig.h"
+#include "tests/support/preprocess/charge_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

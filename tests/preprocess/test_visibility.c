@@ -1,7 +1,7 @@
 /* Detector points are centroids of the surface; the visible share is what faces them from inside. */
 #include "preprocess/regions/regions.h"
-#include "tests/support/preprocess/region_check.h"
-#include "tests/support/preprocess/visible_share.h"
+#include "tests/support/models/bodies.h"
+#include "tests/support/preprocess/tiled_body.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -1,8 +1,7 @@
 /* What every call promises (tests/support/proofs/proof.h), of those that make contexts, meshes, plans and detectors. */
 #include "cscd/research.h"
 #include "tests/support/changing_mesh.h"
-#include "tests/support/models/body_of.h"
-#include "tests/support/proofs/answers.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 

@@ -1,6 +1,5 @@
 /* What every call promises (tests/support/proofs/proof.h), of cscd_detector_find_intersections. */
 #include "tests/support/intersections/body_rig.h"
-#include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 

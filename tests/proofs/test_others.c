@@ -1,6 +1,5 @@
 /* What every call promises (tests/support/proofs/proof.h), of event trackers and of single pairs. */
 #include "tests/support/events/recorded_frames.h"
-#include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"

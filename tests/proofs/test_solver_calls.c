@@ -1,7 +1,6 @@
 /* What every call promises (tests/support/proofs/proof.h), of those that solvers make. */
 #include "cscd/research.h"
 #include "tests/support/loose/loose_scene.h"
-#include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 

@@ -1,6 +1,5 @@
 /* What every call promises (tests/support/proofs/proof.h), of steps and checks of a detector. */
 #include "cscd/research.h"
-#include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,4 @@
 /* What every call promises (tests/support/proofs/proof.h), of those that tell a detector something, and what it answers then. */
-#include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 

@@ -2,7 +2,7 @@
 #include "sensors/placement.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
-#include "tests/support/sensors/hand_partition.h"
+#include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -1,9 +1,9 @@
 /* The exact check of particle sensors: against brute force over the same areas, and against the detector. */
 #include "sensors/exact_check.h"
-#include "tests/support/ccd/queue_test.h"
+#include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
-#include "tests/support/sensors/hand_partition.h"
+#include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -1,6 +1,5 @@
 /* What every call promises (tests/support/proofs/proof.h), of particle sensors. */
 #include "cscd/sensors.h"
-#include "tests/support/proofs/answers.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
 

@@ -6,7 +6,7 @@
 #include "tests/support/calls.h"
 #include "tests/support/oracle.h"
 #include "tests/support/random.h"
-#include "tests/support/solver/free_step_check.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 #include "tests/support/variants.h"
 

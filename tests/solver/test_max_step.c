@@ -3,7 +3,7 @@
 #include "cscd/research.h"
 #include "tests/support/calls.h"
 #include "tests/support/scenes.h"
-#include "tests/support/solver/free_step_check.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 #include "tests/support/variants.h"
 

@@ -5,7 +5,7 @@
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
-#include "tests/support/solver/truncation_trial.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 #include "tests/support/variants.h"
 

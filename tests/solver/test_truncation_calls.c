@@ -1,6 +1,6 @@
 /* Calls of cscd_detector_truncate: what they refuse, what the detector knows afterwards, and the same for everyone. */
 #include "tests/support/calls.h"
-#include "tests/support/solver/truncation_trial.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

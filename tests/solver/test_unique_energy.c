@@ -1,6 +1,6 @@
 /* The energy of proximities without repetitions, along paths on which items merge and part. */
 #include "cscd/cscd.h"
-#include "tests/support/solver/near_items.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "cscd/cscd.h"
 #include "tests/support/calls.h"
 #include "tests/support/random.h"
-#include "tests/support/solver/near_items.h"
+#include "tests/support/solver/solver_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

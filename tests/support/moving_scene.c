@@ -1,4 +1,5 @@
-/* Detectors whose scenes tear, are refined, come and go, with all that they have been told; and the pairs that wait after a tear. */
+/* Detectors whose scenes tear, are refined, come and go, with all that they have been told; and the pairs that wait
+ * after a tear. */
 #include "tests/support/moving_scene.h"
 
 #include "src/mesh/mesh_change.h"

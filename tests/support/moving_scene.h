@@ -1,4 +1,5 @@
-/* Detectors whose scenes tear, are refined, come and go, with all that they have been told; and the pairs that wait after a tear. */
+/* Detectors whose scenes tear, are refined, come and go, with all that they have been told; and the pairs that wait
+ * after a tear. */
 #pragma once
 
 #include "src/mesh/mesh.h"

@@ -1,4 +1,5 @@
-/* Scenes of several objects with random rules, and brute force over what rules, seams and ignored pairs leave out, and what waits after changes. */
+/* Scenes of several objects with random rules, and brute force over what rules, seams and ignored pairs leave out,
+ * and what waits after changes. */
 #include "tests/support/object_scene.h"
 
 #include "cscd/research.h"

@@ -1,8 +1,9 @@
-/* Brute force over features, which every method must equal; which components are collapsed, and when they first touch themselves. */
+/* Brute force over features, which every method must equal; which components are collapsed, and when they first
+ * touch themselves. */
 #include "tests/support/oracle.h"
 
 #include "src/mesh/predicates.h"
-#include "tests/support/ccd/queue_test.h"
+#include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/test.h"
 
 #include <math.h>

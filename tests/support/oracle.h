@@ -1,4 +1,5 @@
-/* Brute force over features, which every method must equal; which components are collapsed, and when they first touch themselves. */
+/* Brute force over features, which every method must equal; which components are collapsed, and when they first
+ * touch themselves. */
 #pragma once
 
 #include "cscd/cscd.h"

@@ -1,4 +1,5 @@
-/* Included by every file of tests: cmocka, the headers that must come before it, what makes a function a test, and rooms of tests. */
+/* Included by every file of tests: cmocka, the headers that must come before it, what makes a function a test, and
+ * rooms of tests. */
 #pragma once
 
 #include <setjmp.h>

@@ -1,27 +1,5 @@
-/* An exact answer to the elementary tests, by algebraic numbers: slow, and shares nothing with the product.
- *
- * The features touch when 0 lies in the convex hull of the differences w of their points: three of them for
- * VF (face - vertex), four for EE (end of a - end of b). By Caratheodory's theorem 0 is then a positive
- * combination of an affinely independent subset, and in terms of the Gram matrix g of the w (all minors are
- * taken of it, no determinant of coordinates) that is one of
- *     single  g_ii = 0,
- *     pair    g_ii g_jj - g_ij^2 = 0 and g_ij < 0,
- *     triple  det = 0 and the first row of the adjugate is positive (then the rank is 2, the adjugate is
- *             c n n^T with c > 0, and n combines the three w to 0).
- * Four affinely independent w there are not: for EE w00 - w01 - w10 + w11 = 0. For the same reason the four
- * triples of EE have one determinant.
- *
- * Each w is linear in t, so all these are polynomials, and the answer depends on their signs only. The
- * touching times are a closed set; let t* > 0 be the first. Which times can it be? det not 0 throughout:
- * singles, pairs and triples need dependent w, so t* is a root of det. det = 0 throughout: if a triple holds
- * at t*, its adjugate row is positive just before t* as well, where det = 0 too, so the features touched
- * earlier. If a pair holds at t* whose minor is 0 throughout, g_ij < 0 just before t* as well, and they
- * touched earlier. So t* is a root of the minor of a pair that is not 0 throughout, or of a g_ii (not 0
- * throughout, else they touch at 0). Nothing was assumed about the position of the points, so this covers all
- * that is flat, collinear or coincident, for a moment or for good. Hence the candidates: 0, and the roots in
- * [0,1] of one polynomial, or of those minors. det is the square of a cubic. Minors and g_ii are nowhere
- * negative, so that their real roots are multiple, and roots of the greatest common divisor with the
- * derivative. */
+/* An exact answer to the elementary tests, by algebraic numbers, which shares nothing with the product; and
+ * comparisons with it. */
 #include "tests/support/ccd/algebraic_oracle.h"
 
 #include "tests/support/ccd/algebraic_moment.h"
@@ -29,6 +7,7 @@
 #include <flint/flint.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 typedef struct gram {
@@ -282,4 +261,53 @@ oracle_verdict algebraic_oracle(cscd_contact_kind kind, const elementary_query *
 
 void algebraic_oracle_finish(void) {
     flint_cleanup();
+}
+
+/* ---- comparisons --------------------------------------------------------------------------------------- */
+
+#define EARLY 1e-9
+
+static comparison judge_answer(const compared *c) {
+    if (c->touching != c->oracle.touching) return c->oracle.touching ? COMPARISON_MISSED : COMPARISON_FALSE;
+    if (!c->oracle.touching) return COMPARISON_AGREES;
+    if (!(c->hit.toi <= c->oracle.toi_high)) return COMPARISON_TOO_LATE;
+    return c->hit.toi >= c->oracle.toi_low - EARLY ? COMPARISON_AGREES : COMPARISON_TOO_EARLY;
+}
+
+void compare_all_with_oracle(cscd_contact_kind kind, const elementary_query *queries, size_t count,
+                             compared *out) {
+    query_answer *answers = malloc((count + 1) * sizeof *answers);
+    if (answers == NULL) abort();
+    pair_test_all(kind, queries, count, answers);
+    for (size_t i = 0; i < count; i++) {
+        out[i] = (compared){.oracle = algebraic_oracle(kind, &queries[i]), .touching = answers[i].touching};
+        out[i].hit = answers[i].hit;
+        if (!answers[i].touching) out[i].hit.toi = 2.0;
+        out[i].result = judge_answer(&out[i]);
+    }
+    free(answers);
+}
+
+compared compare_with_oracle(cscd_contact_kind kind, const elementary_query *query) {
+    compared c;
+    compare_all_with_oracle(kind, query, 1, &c);
+    return c;
+}
+
+static void print_points(const double x[4][3]) {
+    for (int i = 0; i < 4; i++) printf("%s{%a, %a, %a}", i == 0 ? "{" : ",\n  ", x[i][0], x[i][1], x[i][2]);
+}
+
+void print_compared(cscd_contact_kind kind, const elementary_query *query, const compared *c) {
+    static const char *const words[] = {"agrees", "missed contact", "false contact", "toi too late",
+                                        "toi too early"};
+    elementary_contact unused;
+    printf("/* %s, %s: toi %a (2: never), exactly %a .. %a, level %d */\n",
+           kind == CSCD_CONTACT_VF ? "vf" : "ee", words[c->result], c->hit.toi, c->oracle.toi_low,
+           c->oracle.toi_high, (int)pair_test(kind, query, &unused).level);
+    printf("{");
+    print_points(query->x0);
+    printf("},\n ");
+    print_points(query->x1);
+    printf("}},\n");
 }

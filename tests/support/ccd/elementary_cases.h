@@ -1,9 +1,28 @@
-/* Queries for the elementary tests, built backwards from a contact, and checks of what was found. */
+/* The elementary tests as a step runs them, queries built backwards from a contact, and checks of what was found. */
 #pragma once
 
-#include "tests/support/ccd/queue_test.h"
+#include "benchmarks/lib/pair_batches.h"
 
 #include <stdbool.h>
+
+/* Through the feature queue, on every instruction set of the processor. Where these, or the sizes of batches, make a difference, all
+ * of the following say so and abort. */
+
+/* A batch of one. *hit is written when they touch only. */
+elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_contact *hit);
+
+/* All queries, in random order and in batches of random sizes. */
+void pair_test_all(cscd_contact_kind kind, const elementary_query *queries, size_t count,
+                   query_answer *answers);
+
+/* How many queries of the last call each level decided. */
+const uint64_t *pair_test_decided(void);
+
+/* For pairs that have a mesh: the contacts, sorted by a and b, in memory that lasts until the next call. */
+const cscd_contact *pair_test_source(const feature_source *source, cscd_contact_kind kind,
+                                     const uint32_t (*pairs)[2], size_t count, size_t *contact_count);
+
+/* ---- queries with a known answer ----------------------------------------------------------------------- */
 
 /* A query with a contact known to be in it, or known to be missed. */
 typedef struct contact_case {

@@ -32,3 +32,11 @@ const char *query_family_name(query_family family);
 /* Points are renumbered, axes exchanged, time reversed, coordinates shifted and scaled by powers of two at
  * random, exactly, so that all coordinates are 0 or from 2^-300 to 2^300. */
 elementary_query generate_query(random_stream *random, cscd_contact_kind kind, query_family family);
+
+/* ---- exact families ------------------------------------------------------------------------------------ */
+
+/* Both ends included. */
+int stream_integer(random_stream *random, int lowest, int highest);
+
+/* A query of the family, which comes before FAMILY_NUDGED. */
+elementary_query exact_query(random_stream *random, cscd_contact_kind kind, query_family family);

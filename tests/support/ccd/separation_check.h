@@ -1,4 +1,5 @@
-/* Distances of moving features by dense sampling in long double: shares nothing with the code under test. */
+/* Distances of moving features by dense sampling in long double, which shares nothing with the code under test; and
+ * random queries for them. */
 #pragma once
 
 #include "runtime/ccd/ccd.h"
@@ -33,3 +34,15 @@ long double tolerance_of(const elementary_query *query, const separation *limit)
  * distance then, u, v, point and normal. Returns whether the pair was reported. */
 bool check_separation(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
                       bool *bounded);
+
+/* ---- families of queries ------------------------------------------------------------------------------- */
+
+enum { SEPARATION_FAMILY_COUNT = 8 };
+
+typedef struct separation_family {
+    const char *name;
+    void (*make)(elementary_query *query);
+} separation_family;
+
+/* They draw from the stream of tests/support/random.h. */
+extern const separation_family separation_families[SEPARATION_FAMILY_COUNT];

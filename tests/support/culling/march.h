@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/models/body_of.h"
+#include "tests/support/models/bodies.h"
 
 enum { MARCH_OBJECTS_MAX = 2 };
 

@@ -1,4 +1,5 @@
-/* A recording for an event tracker: a mesh, and what each of its frames has, random or copied from a detector. */
+/* A recording for an event tracker: a mesh, and what each of its frames has, random or copied from a detector; and
+ * its events by an oracle. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -37,3 +38,6 @@ void recorded_frames_free(recorded_frames *r);
 /* A tracker with the recording's options, and frames that go into it. */
 cscd_event_tracker *recorded_tracker(const recorded_frames *r);
 void recorded_frames_add(const recorded_frames *r, cscd_event_tracker *tracker, uint32_t begin, uint32_t end);
+
+/* The events by comparing everything with everything: the truth of the tests. It shares no code with the tracker. Returns a sorted list, to be freed by the caller. */
+cscd_event *recording_oracle(const recorded_frames *r, size_t *count);

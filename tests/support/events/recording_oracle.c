@@ -1,5 +1,5 @@
 /* The events of a recording by comparing everything with everything: the truth of the tests. */
-#include "tests/support/events/recording_oracle.h"
+#include "tests/support/events/recorded_frames.h"
 
 #include "tests/support/test.h"
 

@@ -1,6 +1,9 @@
-/* Some bodies, one object each, and what a detector finds where they intersect. */
+/* Some bodies, one object each, what a detector finds where they intersect, and distances from them triangle by triangle. */
 #include "tests/support/intersections/body_rig.h"
 
+#include "runtime/ccd/ccd.h"
+#include "src/core/vec3.h"
+#include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -172,4 +175,74 @@ void body_rig_place(body_rig *r, int axis, bool mirrored, double scale) {
 bool body_rig_is_turned(const body_rig *r, uint32_t component) {
     const bool *turned = r->found.patches->turned;
     return turned != NULL && turned[component];
+}
+
+/* ---- distances and winding numbers --------------------------------------------------------------------- */
+
+static const double *corner_of_body(const body_rig *r, uint32_t triangle, uint32_t i) {
+    return r->all.x0 + (size_t)r->all.triangles[triangle * 3 + i] * 3;
+}
+
+double body_distance(const body_rig *r, uint32_t body, const double x[3]) {
+    double least = INFINITY, u, v;
+    for (uint32_t i = 0; i < r->bodies[body].triangle_count; i++) {
+        uint32_t t = r->bodies[body].first_triangle + i;
+        least = fmin(least, closest_point_triangle(x, corner_of_body(r, t, 0), corner_of_body(r, t, 1),
+                                                   corner_of_body(r, t, 2), &u, &v));
+    }
+    return sqrt(least);
+}
+
+int body_number(const body_rig *r, uint32_t body, const double x[3]) {
+    double sum = 0.0; /* of solid angles: van Oosterom and Strackee 1983 */
+    for (uint32_t t = 0; t < r->bodies[body].triangle_count; t++) {
+        double p[3][3], length[3], cross[3];
+        for (uint32_t i = 0; i < 3; i++) {
+            vec3_subtract(corner_of_body(r, r->bodies[body].first_triangle + t, i), x, p[i]);
+            length[i] = sqrt(vec3_dot(p[i], p[i]));
+        }
+        vec3_cross(p[1], p[2], cross);
+        double bottom = length[0] * length[1] * length[2] + vec3_dot(p[0], p[1]) * length[2] +
+                        vec3_dot(p[1], p[2]) * length[0] + vec3_dot(p[2], p[0]) * length[1];
+        sum += 2.0 * atan2(vec3_dot(p[0], cross), bottom);
+    }
+    return (int)lround(sum / (4.0 * acos(-1.0)));
+}
+
+/* ---- tangles ------------------------------------------------------------------------------------------- */
+
+/* Puts the vertices of a body in another order, as a file does that was exported from another mesh. */
+static void shuffle_vertices(scene *s, uint32_t first, uint32_t count, uint64_t seed) {
+    random_stream random = stream_start(seed);
+    for (uint32_t i = count; i > 1; i--) {
+        double *a = &s->x0[(size_t)(first + i - 1) * 3],
+               *b = &s->x0[(size_t)(first + stream_below(&random, i)) * 3];
+        for (int k = 0; k < 3; k++) {
+            double x = a[k];
+            a[k] = b[k];
+            b[k] = x;
+        }
+    }
+}
+
+void tangle_add_shuffled(body_rig *r, int rings, int segments) {
+    static const double origin[3] = {0, 0, 0}, beside[3] = {0.5, 0.25, 0.125};
+    body_rig_begin(r);
+    scene_add_sphere(&r->all, origin, 1.0, rings, segments);
+    shuffle_vertices(&r->all, 0, r->all.vertex_count, 1);
+    body_rig_end_body(r);
+    scene_add_sphere(&r->all, beside, 0.75, 4, 6);
+    body_rig_end_body(r);
+}
+
+void tangle_add_soup(body_rig *r, uint32_t triangles) {
+    random_stream random = stream_start(2);
+    body_rig_begin(r);
+    for (uint32_t i = 0; i < 3 * triangles; i++) {
+        for (int k = 0; k < 3; k++) r->all.x0[3 * i + (uint32_t)k] = stream_between(&random, 0.0, 1.0);
+        r->all.triangles[i] = i;
+    }
+    r->all.vertex_count = 3 * triangles;
+    r->all.triangle_count = triangles;
+    body_rig_end_body(r);
 }

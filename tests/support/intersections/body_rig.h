@@ -1,4 +1,4 @@
-/* Some bodies, one object each, and what a detector finds where they intersect. */
+/* Some bodies, one object each, what a detector finds where they intersect, and distances from them triangle by triangle. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -71,3 +71,20 @@ void body_rig_place(body_rig *r, int axis, bool mirrored, double scale);
 
 /* Was the component found inside out? */
 bool body_rig_is_turned(const body_rig *r, uint32_t component);
+
+/* ---- distances and winding numbers --------------------------------------------------------------------- */
+
+double body_distance(const body_rig *r, uint32_t body, const double x[3]);
+
+/* The winding number around a generic point. */
+int body_number(const body_rig *r, uint32_t body, const double x[3]);
+
+/* ---- tangles ------------------------------------------------------------------------------------------- */
+
+/* Nearly all triangles of these bodies cross each other. */
+
+/* A ball whose vertices are in another order, and a small one beside its middle. */
+void tangle_add_shuffled(body_rig *r, int rings, int segments);
+
+/* Open triangles, so that there are cut-offs, and no depths. */
+void tangle_add_soup(body_rig *r, uint32_t triangles);

@@ -2,7 +2,7 @@
  * oracle does. */
 #include "tests/support/intersections/surface_trial.h"
 
-#include "tests/support/bvh/mesh_trees.h"
+#include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "runtime/intersections/intersections.h"
+#include "tests/support/intersections/grid_scene.h"
 #include "tests/support/intersections/surface_oracle.h"
-#include "tests/support/intersections/traced_scene.h"
 
 /* How a scene's grid becomes coordinates. */
 typedef enum trial_spread {

@@ -38,3 +38,14 @@ void mesh_check_memory(file_bytes file, mesh_parts_by parts_by);
 /* Checks its memory, and what mesh_check_survives does for the file cut after every byte, with every bit flipped, and with every
  * byte doubled and dropped. */
 void mesh_check_damage(file_bytes file);
+
+/* ---- random damage ------------------------------------------------------------------------------------- */
+
+typedef struct file_damage_counts {
+    uint32_t read, refused;        /* meshes */
+    uint32_t animated, unanimated; /* of those that were read: animations */
+} file_damage_counts;
+
+/* Each round damages the file in one to four places, and checks that it is refused in one line, or gives numbers that are in
+ * range. */
+file_damage_counts file_damage_rounds(file_bytes file, uint32_t round_count, uint64_t seed);

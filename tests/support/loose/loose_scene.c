@@ -2,7 +2,7 @@
  * features by itself, without a tree and without the rules of the library. */
 #include "tests/support/loose/loose_scene.h"
 
-#include "tests/support/float113.h"
+#include "tests/support/ccd/wide_numbers.h"
 #include "tests/support/test.h"
 
 #include <math.h>

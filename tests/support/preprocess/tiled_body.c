@@ -1,7 +1,6 @@
-/* A body with its tiles, for tests of labellings. */
+/* A body with its tiles, for tests of labellings; and the share of a mesh's area that its detector points see. */
 #include "tests/support/preprocess/tiled_body.h"
-#include "src/mesh/surface.h"
-#include "tests/support/preprocess/region_check.h"
+
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 

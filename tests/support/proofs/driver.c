@@ -1,5 +1,5 @@
 /* The promises, each proven by worlds whose answers are compared. */
-#include "tests/support/proofs/world.h"
+#include "tests/support/proofs/proof.h"
 
 #include "src/core/system.h"
 #include "tests/support/test.h"

@@ -1,4 +1,4 @@
-/* How rows of proofs find what their calls need. */
+/* How rows of proofs find what their calls need, what of an answer they compare, and calls that several tables make. */
 #pragma once
 
 #include "tests/support/proofs/proof.h"
@@ -23,3 +23,17 @@ void open_ignoring(proof *p);
 
 /* The positions of a moment. */
 const cscd_view *at_moment(const proof *p, int moment, cscd_view *view);
+
+/* ---- answers ------------------------------------------------------------------------------------------- */
+
+void read_contacts(proof *p);
+void read_near(proof *p);
+void read_reached(proof *p);
+void read_step(proof *p);
+
+/* cscd_detector_find_intersections with all that may be asked for beside the pairs. */
+void read_pairs(proof *p);
+cscd_intersection_options ask_everything(void);
+
+/* Steps over the moments, there and back again. */
+extern const proof_call step_first, step_second, step_third, step_back;

@@ -4,7 +4,6 @@
 #include "src/core/context.h"
 #include "src/mesh/mesh.h"
 #include "tests/support/culling/clean_triangles.h"
-#include "tests/support/proofs/world.h"
 #include "tests/support/test.h"
 
 #include <stdio.h>

@@ -157,3 +157,14 @@ void proof_take_context(proof *p, cscd_context *context);
 
 /* The status in an `open` must be OK. */
 void proof_need(proof *p, cscd_status status);
+
+/* ---- worlds -------------------------------------------------------------------------------------------- */
+
+/* A world of so many threads in which the call number `at` of a source fails or cancels. */
+proof proof_world(const proof_row *row, uint32_t thread_count, proof_source source, size_t at);
+
+/* Tasks are run by the host, on one thread and the last ones first. */
+void proof_host_loop(proof *p);
+
+/* Makes the calls, and destroys everything; any promise that is not kept fails the test. */
+void proof_live(proof *p);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sensors/sensors.h"
-#include "tests/support/preprocess/region_check.h"
+#include "tests/support/models/bodies.h"
 
 /* Checks that each vertex with a triangle is in one cell of a part that has most of its triangles, that
  * cells are not empty, are numbered part by part and are connected, and that all lists agree. */

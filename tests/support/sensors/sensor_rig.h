@@ -1,9 +1,12 @@
-/* A context, a mesh, a plan and sensors for a scene; any failure to make them fails the test. */
+/* A context, a mesh, a plan and sensors for a scene; and partitions made by hand. */
 #pragma once
 
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
+#include "sensors/partition.h"
 #include "tests/support/scenes.h"
+
+/* Any failure to make a rig fails the test. */
 
 /* Calls with packed doubles. The context is that of the mesh. */
 cscd_status sensors_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
@@ -44,3 +47,17 @@ void scene_add_bent_tube(scene *s, const double (*corners)[3], int count, double
 
 /* Moves vertices first .. end - 1 of the positions x. */
 void shift_vertices(uint32_t first, uint32_t end, const double by[3], double *x);
+
+/* ---- partitions made by hand --------------------------------------------------------------------------- */
+
+/* Makes a partition of generation 1 whose parts all belong to different objects. A part has the vertices
+ * whose first triangle it has, so a part with triangles may have no vertices and no cells. Each vertex
+ * goes to the nearest of up to cells_max random centres (tests/support/random.h). triangle_parts: NULL for
+ * the components. */
+sensor_partition *hand_partition_create(const cscd_mesh *mesh, const double *positions,
+                                        const uint32_t *triangle_parts, uint32_t part_count,
+                                        uint32_t cells_max);
+void hand_partition_destroy(sensor_partition *partition);
+
+/* Chooses a random vertex of each cell; `out` has room for as many as there are vertices. */
+void hand_partition_particles(const sensor_partition *partition, uint32_t *out);

@@ -1,5 +1,6 @@
-/* Schoolbook arithmetic on integers of up to 2112 bits. */
-#include "tests/support/ccd/exact_integer.h"
+/* Numbers wider than a double: integers of up to 2112 bits, an oracle that shares nothing with the code under test;
+ * floats of 113 bits. */
+#include "tests/support/ccd/wide_numbers.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,10 +1,13 @@
-/* Checks by brute force everything that a step certified free of contact promises. */
-#include "tests/support/solver/free_step_check.h"
+/* What tests of calls for solvers share: brute force about certified steps, lists of proximities with their
+ * energies, and truncations. */
+#include "tests/support/solver/solver_rig.h"
+
 #include "cscd/research.h"
 #include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
 #include "tests/support/calls.h"
 #include "tests/support/test.h"
+#include "tests/support/variants.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -201,4 +204,99 @@ bool free_step_check(const rig *reference, const cscd_context *called, const fre
         check_free(reference, call, distance);
     expect_ok(cscd_detector_set_separation(reference->detector, distance, tolerance));
     return !refused;
+}
+
+/* ---- proximities and truncations ----------------------------------------------------------------------- */
+
+rig near_rig(const scene *s, uint32_t threads) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = CSCD_METHOD_NONE;
+    return rig_create(s, threads, &options);
+}
+
+void set_rest(const rig *r, const double *rest) {
+    expect_ok(set_rest_packed(r->detector, rest));
+}
+
+item_list find_items(const rig *r, const double *x, double distance, cscd_near_form form) {
+    cscd_proximities found = {.count = 4711};
+    expect_ok(
+        (form == CSCD_NEAR_UNIQUE ? find_unique_packed : find_near_packed)(r->detector, x, distance, &found));
+    item_list list = {calloc(found.count + 1, sizeof *list.items), found.count};
+    assert_non_null(list.items);
+    if (found.count > 0) memcpy(list.items, found.items, found.count * sizeof *list.items);
+    return list;
+}
+
+double mollifier_of(const cscd_proximity *p, const double *x) {
+    double a[3], b[3], c[3], square = 0.0;
+    if (p->threshold == 0.0) return 1.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        a[k] = x[p->vertices[1] * 3 + k] - x[p->vertices[0] * 3 + k];
+        b[k] = x[p->vertices[3] * 3 + k] - x[p->vertices[2] * 3 + k];
+    }
+    for (int k = 0; k < 3; k++) {
+        c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        square += c[k] * c[k];
+    }
+    double share = square / p->threshold;
+    return share < 1.0 ? share * (2.0 - share) : 1.0;
+}
+
+/* A barrier without its pole, so that scenes with contacts have an energy, too. */
+static double energy_of(double distance, double reach) {
+    double beyond = 1.0 - distance / reach;
+    return beyond > 0.0 ? beyond * beyond * (2.0 + distance / reach) : 0.0;
+}
+
+double sum_energies(const item_list *list, const double *x, double reach, bool counted) {
+    double sum = 0.0;
+    for (size_t i = 0; i < list->count; i++) {
+        const cscd_proximity *p = &list->items[i];
+        sum += (counted ? p->count : 1) * mollifier_of(p, x) * energy_of(p->distance, reach);
+    }
+    return sum;
+}
+
+/* ---- truncation ---------------------------------------------------------------------------------------- */
+
+rig rig_apart(const scene *s, double apart, cscd_method method, uint32_t threads) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = apart;
+    options.method = method_or_none(method);
+    options.ours = ours_of_method(options.method);
+    return rig_create(s, threads, &options);
+}
+
+void scene_two_triangles(scene *s, double apart) {
+    static const double corners[3][2] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+    s->vertex_count = 6;
+    s->triangle_count = 2;
+    for (uint32_t i = 0; i < 6; i++) {
+        s->triangles[i] = i;
+        s->x0[3 * i] = corners[i % 3][0];
+        s->x0[3 * i + 1] = corners[i % 3][1];
+        s->x0[3 * i + 2] = i < 3 ? 0.0 : apart;
+    }
+    memcpy(s->x1, s->x0, sizeof s->x1);
+}
+
+static void narrow_positions(const scene *s, const double *from, float *to) {
+    for (size_t i = 0; i < (size_t)s->vertex_count * 3; i++) to[i] = (float)from[i];
+}
+
+cscd_truncation truncate_scene(const rig *r, const scene *s, double radius, cscd_scalar scalar, double *end) {
+    static float x0[SCENE_VERTICES_MAX * 3], x1[SCENE_VERTICES_MAX * 3];
+    cscd_truncation out;
+    uint32_t count = s->vertex_count;
+    if (scalar == CSCD_SCALAR_DOUBLE) {
+        expect_ok(truncate_packed(r->detector, s->x0, s->x1, radius, end, &out));
+        return out;
+    }
+    narrow_positions(s, s->x0, x0);
+    narrow_positions(s, s->x1, x1);
+    expect_ok(cscd_detector_truncate(r->detector, CSCD_FLOATS(x0, count), CSCD_FLOATS(x1, count), radius,
+                                     CSCD_MUTABLE_FLOATS(x1, count), &out));
+    for (size_t i = 0; i < (size_t)count * 3; i++) end[i] = (double)x1[i];
+    return out;
 }

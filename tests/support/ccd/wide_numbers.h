@@ -1,6 +1,8 @@
-/* Integers of up to 2112 bits, for tests: an exact oracle that shares nothing with the code under test. */
+/* Numbers wider than a double: integers of up to 2112 bits, an oracle that shares nothing with the code under test;
+ * floats of 113 bits. */
 #pragma once
 
+#include <float.h>
 #include <stdint.h>
 
 #define EXACT_LIMB_COUNT 66
@@ -22,3 +24,10 @@ struct exact_integer exact_from_double(double value);
 struct exact_integer exact_add(const struct exact_integer *a, const struct exact_integer *b);
 struct exact_integer exact_subtract(const struct exact_integer *a, const struct exact_integer *b);
 struct exact_integer exact_multiply(const struct exact_integer *a, const struct exact_integer *b);
+
+/* Floats of 113 bits are an own type of compilers for x86, and what long double is on other 64-bit processors. */
+#if LDBL_MANT_DIG == 113
+typedef long double float113;
+#else
+typedef __float128 float113;
+#endif

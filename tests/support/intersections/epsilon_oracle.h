@@ -1,6 +1,7 @@
-/* All piercings of a small scene, by trying each edge with each triangle, in polynomials. */
+/* Piercings and winding numbers of a small scene by brute force, in polynomials in epsilon. */
 #pragma once
 
+#include "runtime/intersections/named_surface.h"
 #include "tests/support/intersections/grid_scene.h"
 
 /* Does the edge pass through the triangle, without a common vertex? */
@@ -14,3 +15,11 @@ typedef struct exact_piercing_point {
 } exact_piercing_point;
 
 exact_piercing_point piercing_oracle_point(const grid_scene *s, surface_piercing piercing);
+
+/* ---- winding numbers ----------------------------------------------------------------------------------- */
+
+/* So many vertices leave powers of epsilon for the point. */
+enum { WINDING_NAMES = 14 };
+
+/* The winding number of an object at the point, whose scene has no more vertices than that. */
+int winding_oracle_number(const grid_scene *s, corner_side at, uint32_t object);

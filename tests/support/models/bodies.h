@@ -1,8 +1,26 @@
-/* A body that bends: what plans for a motion are made for. */
+/* The bodies of models/shapes for tests, the invariants of their regions, and bodies that bend: what plans for a
+ * motion are made for. */
 #pragma once
 
 #include "cscd/cscd.h"
-#include "tests/support/models/body_of.h"
+#include "models/shapes/catalogue.h"
+#include "src/mesh/mesh.h"
+
+/* Makes a body with exactly that many triangles, or its default number when that is 0; the caller frees
+ * it. The test fails when it cannot be made. */
+body body_of(body_kind kind, uint32_t triangle_count);
+
+/* ---- their meshes and regions -------------------------------------------------------------------------- */
+
+/* Checks that regions are numbered from 0 by first triangles and are connected, and that none is in two
+ * components. */
+void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t region_count);
+
+/* Makes the mesh of a body, in a context of its own with that many threads. */
+cscd_mesh *body_mesh(const body *b, uint32_t thread_count);
+void body_mesh_destroy(cscd_mesh *mesh);
+
+/* ---- bodies that bend ---------------------------------------------------------------------------------- */
 
 enum { BENDING_FRAMES = 12 };
 
