@@ -87,10 +87,10 @@ static inline const grid_entry *grid_search_next(grid_search *s) {
  *
  * The thesis adds attractions as vectors. Then two that pull to opposite sides cancel, and many far ones
  * outweigh the one at which there is a contact. With the strongest one alone, particles of two objects that
- * touch end where they are nearest, whatever else is around: the exact check confirms more contacts
- * (docs/theory/sensors.md compares the rules), and far particles cost little, since they can be dropped. Two
- * particles also rest where only a move of both at once would bring them nearer, for instance side by side on
- * two round surfaces. No rule that moves single particles avoids that. */
+ * touch end where they are nearest, whatever else is around: the exact check confirms more contacts, and far
+ * particles cost little, since they can be dropped. Two particles also rest where only a move of both at once
+ * would bring them nearer, for instance side by side on two round surfaces. No rule that moves single particles
+ * avoids that. */
 typedef enum particle_rule {
     PARTICLE_ATTRACTION, /* where the sum of attractions, as vectors, is longest (3.14), as in the thesis */
     PARTICLE_SCALAR,     /* where the sum of their magnitudes is largest */

@@ -321,7 +321,7 @@ static cscd_status find_cover(tile_labelling *l) {
 
 /* ---- regions of a component ---------------------------------------------------------------------------- */
 
-/* Found with the bodies of models/shapes: docs/theory/charge.md. */
+/* The prices of docs/theory/charge.md, found with the bodies of models/shapes. */
 static const labelling_prices usual_prices = {.region = 0.008, .border = 0.01};
 
 static cscd_status add_point(body_regions *regions, cscd_context *context, const double point[3]) {

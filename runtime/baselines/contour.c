@@ -246,8 +246,8 @@ static planar_motion motion_between(const star_vertex *from, const star_vertex *
 }
 
 /* Is the cross product of two motions positive at every moment? It is quadratic, and grows with each Bernstein coefficient, so
- * these may be lower bounds. Divided by (1 - t)^2 it is b0 + 2 b1 s + b2 s^2, with s from 0 to infinity, whose least value is
- * positive exactly if b0 and b2 are, and b1 is not below -sqrt(b0 b2) (iccd.md, lemma 1). */
+ * these may be lower bounds. Divided by (1 - t)^2 it is b0 + 2 b1 s + b2 s^2, with s from 0 to infinity (docs/theory/iccd.md,
+ * lemma 1): positive exactly if b0, b2 > 0 and b1 > -sqrt(b0 b2), of which the product of roots is off by 3 times 2^-53. */
 static bool stays_positive(const planar_motion *a, const planar_motion *b, double error) {
     const double b0 = plane_cross(a->at[0], b->at[0]) - error, b2 = plane_cross(a->at[1], b->at[1]) - error;
     if (!(b0 > 0.0 && b2 > 0.0)) return false;

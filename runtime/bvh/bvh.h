@@ -11,7 +11,7 @@
  *     0                                        children: leaves
  *
  * Bounds are floats in the frame of their tree, scaled by a power of two that all trees have in common, and on the tree
- * level and above in the frame of the first tree. docs/theory/trees.md derives how far they are rounded outward. */
+ * level and above in the frame of the first tree. bvh_refit.c derives how far they are rounded outward. */
 #pragma once
 
 #include "src/core/context.h"

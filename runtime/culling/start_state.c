@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Measured (docs/theory/culling.md). */
+/* The share of a component that has to be clean, so that culling pays. Measured. */
 static const double share_worth_it = 0.9;
 
 enum { BACKOFF_MAX = 16, VERTICES_PER_TASK = 2048 };

@@ -1,4 +1,4 @@
-/* The parts of open surfaces that traces of curves cut off: docs/theory/curves.md, Lemma 11. */
+/* The parts of open surfaces that traces of curves cut off: docs/theory/curves.md, Lemma 10. */
 #include "runtime/intersections/named_surface.h"
 
 #include "src/core/sort.h"

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bodies up to the sphere: those of docs/theory/charge.md. */
+/* The bodies up to the sphere. */
 enum { TRIANGLES_MAX = 6000, REGIONS_MAX = 200, BODIES = BODY_SPHERE + 1 };
 
 /* The charged bodies, made once. */
