@@ -25,7 +25,7 @@ static const option_row rows[] = {
     {"contacts", "OUT.csv|OUT.jsonl", read_output_path, offsetof(merge_options, contacts_path),
      "of a recording: what cscd replay writes by the same option"},
     {"json", "OUT.json", read_output_path, offsetof(merge_options, json_path), "the same"},
-    {"events", "OUT.csv|OUT.json", read_output_path, offsetof(merge_options, events_path), "the same"},
+    {"events", "OUT.csv", read_output_path, offsetof(merge_options, events_path), "the same"},
     {"report", "OUT.html", read_output_path, offsetof(merge_options, report_path), "the same"},
     {"title", "TEXT", read_text, offsetof(merge_options, title), "of the report"},
     {"reproducible", NULL, read_flag, offsetof(merge_options, reproducible),

@@ -23,8 +23,8 @@ static const option_row rows[] = {
      "also find all contacts (cscd replay, method none): recall and precision of the pairs of objects, and "
      "the time of both"},
     {"method", "cells", read_sensor_method, offsetof(sense_options, sensors.method),
-     "a particle in every cell of the partition (default)"},
-    {"method", "random", .help = "a fixed number on each object, from random vertices: to compare with"},
+     "one particle in every cell of a part (default)"},
+    {"method", "random", .help = "the same number on each object, from random vertices: to compare with"},
     {"mu", "D", read_length, offsetof(sense_options, sensors.collision_distance),
      "warn of particles that come nearer than this, a length in the files' unit (default 0: by the longest "
      "edges and the motion)"},

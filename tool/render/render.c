@@ -24,7 +24,7 @@ static const option_row rows[] = {
     {"output", "OUT.png", read_output_path, offsetof(render_options, output_path), NULL},
     {"frame", "K", read_frame_number, offsetof(render_options, frame), "one frame (default: the first)"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(render_options, frames),
-     "a strip: the frames A to B, both included, or every STEP-th of them (A: and :B are open ends), each as "
+     "as a strip, the frames A to B, both included, or every STEP-th of them (A: and :B are open ends), each as "
      "a tile with its number in the corner; one camera for all of them that holds the whole motion"},
     {"columns", "N", read_positive, offsetof(render_options, columns),
      "tiles in a row (default: as many as there are rows, or one more)"},
