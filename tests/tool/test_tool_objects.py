@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.reading import read_contacts, read_json
+from support.tool.reading import CONTACT_COLUMNS, read_contacts, read_json
 from support.tool.recordings import tetrahedra
 from support.tool.running import fails, run, usage_error
 from support.tool.soft_bar import write_soft_bar
@@ -42,7 +42,7 @@ def test_objects_meet_as_in_one_mesh(objects):
 
 def test_obstacles_do_not_meet_each_other():
     run("replay --obstacle wall=wall.obj --obstacle dart=dart.obj --frames-of dart=dart.pc2 --no-check --contacts out.csv")
-    assert Path("out.csv").read_text() == "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz,object_a,object_b\n"
+    assert Path("out.csv").read_text() == ",".join([*CONTACT_COLUMNS, "object_a", "object_b"]) + "\n"
 
 
 def test_tables_name_objects_in_quotes():

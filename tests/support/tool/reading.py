@@ -2,10 +2,21 @@
 import csv
 import io
 import json
+import re
 from pathlib import Path
 from typing import NamedTuple, Tuple
 
-CONTACT_COLUMNS = "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz".split(",")
+_PAGE = (Path(__file__).parents[3] / "docs/artist/formats.md").read_text().split("## Contacts: ")[1].split("\n## ")[0]
+
+
+def _promised(names):
+    """The columns or members of contacts as the page of formats has them, without those that not all files have."""
+    assert names[:3] == ["frame", "kind", "toi"] and "bounded" in names, names
+    return names[:names.index("bounded")]
+
+
+CONTACT_COLUMNS = _promised(", ".join(re.findall(r"^\| ([a-z0-9_, ]+) \|", _PAGE, re.MULTILINE)[1:]).split(", "))
+CONTACT_MEMBERS = _promised(re.findall(r"`(\w+)`", _PAGE.split("per\nline: ")[1]))
 
 
 def _refuse_constant(name):
@@ -78,9 +89,9 @@ def read_contacts(path):
 
 
 def _contact_of_line(line):
-    fields = set("frame kind toi a b u v point normal".split())
-    assert set(line) in (fields, fields | {"objects"}), line
-    return Contact(**{key: tuple(value) if isinstance(value, list) else value for key, value in line.items()})
+    assert list(line) in (CONTACT_MEMBERS, CONTACT_MEMBERS + ["objects"]), line
+    values = {key: line[key] for key in Contact._fields if key in line}
+    return Contact(**{key: tuple(value) if isinstance(value, list) else value for key, value in values.items()})
 
 
 def _contact_of_row(row):
