@@ -1,7 +1,6 @@
 /* The charge of conductors: how exact it is, whether its solvers agree, what they cost, and what hard meshes do to them. */
-#include "benchmarks/lib/charge_tables.h"
 #include "benchmarks/lib/charge_trial.h"
-#include "benchmarks/lib/row_file.h"
+#include "benchmarks/lib/options.h"
 #include "models/shapes/catalogue.h"
 #include "tool/common/plans.h"
 

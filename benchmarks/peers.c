@@ -1,8 +1,7 @@
 /* Embree's broad phase and CGAL's check compared with ours, on the same frames and in one run. */
 #include "benchmarks/lib/options.h"
-#include "benchmarks/lib/row_file.h"
 #include "benchmarks/peers/cgal_peer.h"
-#include "benchmarks/peers/embree_peer.h"
+#include "benchmarks/peers/peer_scenes.h"
 #include "benchmarks/peers/peer_trial.h"
 
 #include <stdlib.h>

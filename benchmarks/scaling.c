@@ -1,5 +1,4 @@
 /* The cost of each stage per triangle, from small meshes to large ones, where nothing touches. */
-#include "benchmarks/lib/fixed_arithmetic.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 #include "cscd/research.h"

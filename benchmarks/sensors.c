@@ -1,7 +1,6 @@
 /* The worth of particle sensors: recall, false alarms and time on scenes of many objects, compared with the
  * detector. */
 #include "benchmarks/lib/scene_files.h"
-#include "benchmarks/sensors/cost.h"
 #include "benchmarks/sensors/trial.h"
 
 #include <stdio.h>

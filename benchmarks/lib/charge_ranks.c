@@ -1,6 +1,6 @@
 /* The tree's charges compared with those of the dense solution: cuts are made of the order of the densities,
  * so that is what must agree. */
-#include "benchmarks/lib/charge_tables.h"
+#include "benchmarks/lib/charge_trial.h"
 #include "benchmarks/lib/density_ranks.h"
 #include "models/shapes/catalogue.h"
 

@@ -1,6 +1,6 @@
 /* The cost of plans by charge: milliseconds of each stage and the greatest memory, from small meshes to large
  * ones. */
-#include "benchmarks/lib/charge_tables.h"
+#include "benchmarks/lib/charge_trial.h"
 #include "models/shapes/catalogue.h"
 
 enum { THREADS_MOST = 2 };

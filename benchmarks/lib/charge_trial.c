@@ -1,4 +1,5 @@
-/* A solution for charges in a process of its own, so that its peak of memory is known and memory that others left does not matter. */
+/* A solution for charges in a process of its own, so that its peak of memory is known and memory that others left
+ * does not matter; and the tables of benchmarks/charge.c, which are made of such trials. */
 #include "benchmarks/lib/charge_trial.h"
 
 #include "preprocess/preprocess.h"
@@ -156,4 +157,23 @@ bool charge_trial_run(const body *b, const charge_request *request, charge_trial
 
 const char *charge_solver_name(cscd_charge_solver solver) {
     return solver == CSCD_CHARGE_DENSE ? "dense" : solver == CSCD_CHARGE_COARSE ? "coarse" : "tree";
+}
+
+bool charge_row_begin(json *out, const char *table, const char *name, uint32_t triangles,
+                      cscd_charge_solver solver) {
+    if (out->file == NULL) return false;
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_string(out, "table", table);
+    json_string(out, "body", name);
+    json_integer(out, "triangles", triangles);
+    json_string(out, "solver", charge_solver_name(solver));
+    return true;
+}
+
+void charge_row_end(json *out, const charge_trial *t) {
+    json_integer(out, "iterations", t->iterations);
+    json_number(out, "total_ms", t->total_ms);
+    json_number(out, "peak_bytes", t->peak_bytes);
+    json_end_object(out);
 }

@@ -1,10 +1,21 @@
-/* Options, progress and JSON that the programs on deforming bodies have in common. */
+/* What programs of benchmarks have in common: a JSON file of rows and where they come from, options, and progress. */
 #pragma once
 
 #include "cscd/cscd.h"
 #include "models/shapes/catalogue.h"
 #include "tool/common/terminal.h"
+#include "tool/io/io.h"
 #include "tool/io/json.h"
+
+/* Begins the object. Without a path there is no file: out->file is NULL then, and nothing may be written. */
+bool row_file_open(const char *path, json *out, io_error *error);
+
+/* Begins and ends the list of rows. The second also writes the provenance, ends the object and closes the file, if there is one. */
+void row_file_begin(json *out);
+bool row_file_close(const char *path, int argument_count, char **arguments, uint32_t thread_count, json *out,
+                    io_error *error);
+
+/* ---- options ------------------------------------------------------------------------------------------- */
 
 enum { SIZES_MAX = 16, INTERVALS_MAX = 60 };
 

@@ -2,7 +2,6 @@
 #include "benchmarks/lib/recording_program.h"
 
 #include "benchmarks/lib/options.h"
-#include "benchmarks/lib/row_file.h"
 #include "src/core/system.h"
 #include "src/core/timer.h"
 

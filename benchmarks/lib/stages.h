@@ -1,4 +1,5 @@
-/* Detectors under measurement: one method on one mesh, its stages interval by interval, its memory. */
+/* Detectors under measurement: one method on one mesh, its stages interval by interval, its memory; and how fast
+ * the machine is at the moment. */
 #pragma once
 
 #include "benchmarks/lib/deforming_body.h"
@@ -54,3 +55,11 @@ void subject_destroy(subject *s);
  * should not be. */
 bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
                   io_error *error);
+
+/* ---- the machine --------------------------------------------------------------------------------------- */
+
+/* Computes for a millisecond or two; use the result, or the loop is optimised away. */
+double fixed_arithmetic(void);
+
+/* Returns the milliseconds that it takes now. */
+double fixed_arithmetic_ms(void);

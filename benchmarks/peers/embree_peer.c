@@ -1,7 +1,7 @@
 /* Embree's broad phase: rtcCollide of a scene with itself, the boxes of the swept triangles as user geometry. In a scene
  * of low quality Embree refits, but reports pairs of leaves of several boxes, so the callback tests the boxes. Pairs are reported
  * twice, once in each order, and pairs of neighbours too. */
-#include "benchmarks/peers/embree_peer.h"
+#include "benchmarks/peers/peer_scenes.h"
 
 #include "benchmarks/peers/peer_clock.h"
 #include "models/shapes/body.h"

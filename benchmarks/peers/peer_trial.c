@@ -2,8 +2,8 @@
 #include "benchmarks/peers/peer_trial.h"
 
 #include "benchmarks/peers/cgal_peer.h"
-#include "benchmarks/peers/embree_peer.h"
 #include "benchmarks/peers/peer_clock.h"
+#include "benchmarks/peers/peer_scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

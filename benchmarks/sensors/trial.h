@@ -1,8 +1,10 @@
-/* One recording under particle sensors of some rules, and what the detector finds in it. */
+/* One recording under particle sensors of some rules, and what the detector finds in it; and steps of sensors by
+ * size and by number of objects. */
 #pragma once
 
 #include "benchmarks/lib/scene_files.h"
 #include "sensors/tool/object_pairs.h"
+#include "tool/io/io.h"
 
 /* Sorts the values. */
 double sensor_median(double *values, uint32_t count);
@@ -39,3 +41,8 @@ typedef struct sensor_trial {
 bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,
                       sensor_trial *out, io_error *error);
 void sensor_trial_add(sensor_trial *sum, const sensor_trial *one);
+
+/* ---- cost of steps ------------------------------------------------------------------------------------- */
+
+/* Prints two tables on the standard output. */
+bool sensor_cost_print(io_error *error);
