@@ -827,7 +827,7 @@ $(OBJECTS)/tests/support/variants.o: CFLAGS_ALL += $(if $(HAS_BASELINES),-DWITH_
 $(OBJECTS)/tool/tool.o: CFLAGS_ALL += $(if $(HAS_SENSORS),-DWITH_SENSORS)
 
 # Readers that one command has for itself, and what damaged files and those of libFuzzer go through.
-READING_OBJECTS := $(call objects,$(addprefix tests/fuzz/,readings.c reading_memory.c) tool/summary_file.c)
+READING_OBJECTS := $(call objects,tests/fuzz/readings.c tool/summary_file.c)
 $(BUILD)/tests/fuzz/fuzz_readers $(BUILD)/tests/fuzz/coverage_target: $(READING_OBJECTS)
 # gold warns of hundreds of the sanitizer's own symbols.
 $(BUILD)/tests/fuzz/coverage_target: TEST_LINKER :=

@@ -10,7 +10,7 @@ CORE_LIBS  := -lm
 # solver is that of the tests on Windows; files of pytest run the tool, which is not built. tests/wasm/left_out.txt says why a program is missing.
 TEST_LIBS       := -L$(WASM_LIBRARIES)/lib -lcmocka-static
 TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess proofs
-BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c $(addprefix tests/windows/,dense_solve.c dense_library.c)
+BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c tests/windows/dense_solve.c
 COMMON_SOURCES  := tool/io/io.c tool/io/io_memory.c
 SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/solver/exact_distance.c \
                      $(foreach room,install io models report tool,tests/support/$(room)/%),$(SUPPORT_SOURCES)) \

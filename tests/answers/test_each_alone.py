@@ -3,8 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.boxes import box
-from support.tool.gltf import write_glb
+from support.tool.mesh_files import box, write_glb
 from support.tool.reading import json_of
 from support.tool.running import run
 

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.boxes import box
-from support.tool.jobs import read_results, write_list
+from support.tool.mesh_files import box
 from support.tool.reading import read_json
-from support.tool.running import run
+from support.tool.running import read_results, run, write_list
 
 BOTH = pytest.mark.parametrize("command", ["check", "replay"])
 

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.boxes import box, cube
+from support.tool.mesh_files import box, cube
 from support.tool.reading import read_json
 from support.tool.running import run, usage_error
 

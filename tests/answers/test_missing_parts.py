@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.gltf import write_glb
+from support.tool.mesh_files import write_glb
 from support.tool.running import fails, run
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"

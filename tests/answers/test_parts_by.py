@@ -4,11 +4,9 @@ from typing import NamedTuple, Optional, Tuple
 
 import pytest
 
-from support.tool.boxes import SIDES, corners_of
-from support.tool.gltf import write_glb
-from support.tool.jobs import write_list
+from support.tool.mesh_files import SIDES, corners_of, write_glb
 from support.tool.reading import read_json
-from support.tool.running import fails, run, usage_error
+from support.tool.running import fails, run, usage_error, write_list
 
 MATERIALS = ("Brushed Steel #2", "Rubber", "Glass")
 LID = 1

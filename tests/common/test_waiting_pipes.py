@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import write_list
 from support.tool.reading import read_json
 from support.tool.recordings import tetrahedra
-from support.tool.running import command, finish, start, wait_until
+from support.tool.running import command, finish, start, wait_until, write_list
 
 SECONDS = 60
 

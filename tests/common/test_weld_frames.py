@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.gltf import UNSIGNED_SHORT, write_glb
+from support.tool.mesh_files import UNSIGNED_SHORT, write_glb
 from support.tool.reading import read_json
 from support.tool.recordings import Recording, cube
 from support.tool.running import fails, run

@@ -3,9 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import write_list
 from support.tool.recordings import tetrahedra
-from support.tool.running import fails, run
+from support.tool.running import fails, run, write_list
 
 REASON = "No space left on device"
 

@@ -1,6 +1,6 @@
 /* Curves, patches and winding numbers of so many random small scenes against the oracle; prints the scenes on which they
  * differ. Usage: fuzz_surfaces SCENES SEED. */
-#include "tests/support/intersections/surface_trial.h"
+#include "tests/support/intersections/surface_oracle.h"
 
 #include <stdio.h>
 #include <stdlib.h>

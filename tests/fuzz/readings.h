@@ -30,3 +30,11 @@ const mesh_file *reading_tetrahedron(void);
 enum { READING_SECONDS = 5 };
 bool reading_try(const reading *r, const temp_folder *folder, const char *name, const mesh_file *model,
                  const unsigned char *bytes, size_t size);
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+/* Begins to count, from 0. */
+void reading_memory_begin(void);
+
+/* The most that was allocated at once since then; 0 in a program without the sanitizer. */
+size_t reading_memory_peak(void);

@@ -1,5 +1,5 @@
 /* Animations as their readers are called: frames in any order and beyond the end, files that shrink, and counts that no tool gives. */
-#include "tests/support/io/frame_fixture.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
 
 #include <unistd.h>

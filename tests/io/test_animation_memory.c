@@ -1,7 +1,7 @@
 /* The memory of animations: every allocation fails once, and the peak does not grow with the number of
  * frames. */
 #include "tests/support/files.h"
-#include "tests/support/io/frame_fixture.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
 #include "tool/io/io.h"
 #include "tool/io/point_cache.h"

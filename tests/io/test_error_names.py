@@ -3,7 +3,7 @@ import json
 
 import pytest
 
-from support.tool.gltf import FLOAT, Gltf
+from support.tool.mesh_files import FLOAT, Gltf
 from support.tool.read_back import expect_errors, shown, whole, write_file
 from support.tool.running import run
 

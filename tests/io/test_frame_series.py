@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.ply import read_ply
+from support.tool.exported import read_ply
 from support.tool.reading import read_json
 from support.tool.recordings import Recording
 from support.tool.running import fails, run

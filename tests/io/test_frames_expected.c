@@ -1,5 +1,5 @@
 /* Frames that are said to be read soon: the system fetches their files from the disk meanwhile. */
-#include "tests/support/io/frame_fixture.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
 
 #include <fcntl.h>

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.gifti import ASCII, BASE64, HALVES, SQUARE, ZIPPED, square_gifti
+from support.tool.mesh_files import ASCII, BASE64, HALVES, SQUARE, ZIPPED, square_gifti
 from support.tool.read_back import expect_errors, expect_mesh, frames_read, shown, whole
 from support.tool.running import run
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.gltf import BYTE, FLOAT, SHORT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT, Gltf
+from support.tool.mesh_files import BYTE, FLOAT, SHORT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT, Gltf
 from support.tool.read_back import expect_errors, expect_mesh, frames_read
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]

@@ -3,7 +3,7 @@ from math import atan, cos, hypot, sin
 
 import pytest
 
-from support.tool.gltf import UNSIGNED_BYTE, Gltf
+from support.tool.mesh_files import UNSIGNED_BYTE, Gltf
 from support.tool.read_back import expect_errors, frames_read, write_file
 from support.tool.reading import read_json
 from support.tool.running import fails, run, usage_error

@@ -1,7 +1,7 @@
 """glTF files that are wrong: each error says what and where."""
 import struct
 
-from support.tool.gltf import FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT, Gltf, glb_of
+from support.tool.mesh_files import FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT, Gltf, glb_of
 from support.tool.read_back import expect_errors
 
 POSITIONS = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]

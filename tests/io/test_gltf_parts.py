@@ -1,7 +1,7 @@
 """The parts of glTF files, which face of the file a triangle is, copies of meshes, and notes about what is not read."""
 import pytest
 
-from support.tool.gltf import BYTE, FLOAT, UNSIGNED_BYTE, Gltf
+from support.tool.mesh_files import BYTE, FLOAT, UNSIGNED_BYTE, Gltf
 from support.tool.read_back import errors_of, expect_mesh, frames_read, write_file
 from support.tool.reading import read_json
 from support.tool.running import run

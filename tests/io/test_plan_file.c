@@ -1,8 +1,8 @@
 /* Plan files: what is written comes back bit for bit; other meshes and damaged files are refused. */
 #include "tests/support/calls.h"
 #include "tests/support/files.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/tool_fixture.h"
 #include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
 #include "tool/io/ply.h"

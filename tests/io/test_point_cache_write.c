@@ -1,6 +1,6 @@
 /* The point cache writer: the exact bytes, and no file left behind by a failure. */
 #include "tests/support/files.h"
-#include "tests/support/io/frame_fixture.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
 #include "tool/io/point_cache.h"
 

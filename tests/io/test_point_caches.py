@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import read_results, write_list
-from support.tool.ply import read_ply
-from support.tool.running import WINDOWS, fails, run
+from support.tool.exported import read_ply
+from support.tool.running import WINDOWS, fails, read_results, run, write_list
 
 VERTICES, FRAMES = 5, 4
 KINDS = pytest.mark.parametrize("kind", ["pc2", "mdd"])

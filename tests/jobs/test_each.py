@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CROSSING, SQUARE
 from support.tool.reading import json_of, lines_of, read_csv, read_json_lines
 from support.tool.recordings import cube, fold, tetrahedra
-from support.tool.running import fails, finish, run, start, usage_error, wait_until
+from support.tool.running import CROSSING, SQUARE, fails, finish, run, start, usage_error, wait_until
 
 KINDS = ("crossing", "coplanar", "folded", "duplicate", "touching")
 SMALL = {

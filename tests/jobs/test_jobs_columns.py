@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import write_list
-from support.tool.report_page import read_doubles, read_texts
-from support.tool.running import run
+from support.tool.exported import read_doubles, read_texts
+from support.tool.running import run, write_list
 
 # A recording of which no two numbers are equal, one that failed, a mesh, and a reason that begins with another name.
 JOBS = [

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CLEAN, CROSSING, write_list
+from support.tool.exported import read_array, read_doubles, read_page, read_texts
 from support.tool.recordings import fold
-from support.tool.report_page import read_array, read_doubles, read_page, read_texts
-from support.tool.running import fails, run, usage_error
+from support.tool.running import CLEAN, CROSSING, fails, run, usage_error, write_list
 
 # What the page calls the outcomes.
 IS_CLEAN, CROSSES, FAILED, MISSING = 0, 1, 5, 6

@@ -3,10 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CLEAN, DAMAGED, read_results, write_list
 from support.tool.reading import read_json
 from support.tool.recordings import fold
-from support.tool.running import SLOW_MACHINE, fails, run, usage_error
+from support.tool.running import CLEAN, DAMAGED, SLOW_MACHINE, fails, read_results, run, usage_error, write_list
 
 FOLD = {"model": "fold.obj", "frames": "fold.pc2"}
 

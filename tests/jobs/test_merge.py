@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CLEAN, CROSSING, write_list
 from support.tool.reading import lines_of
 from support.tool.recordings import fold
-from support.tool.running import fails, limited_to, run, usage_error
+from support.tool.running import CLEAN, CROSSING, fails, limited_to, run, usage_error, write_list
 
 
 @pytest.fixture(autouse=True)

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import write_list
-from support.tool.running import command, fails, finish, run, start
+from support.tool.running import command, fails, finish, run, start, write_list
 
 SHARDS, JOBS = 60, 1200
 FILES = [f"shard-{i:02}.jsonl" for i in range(SHARDS)]

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CLEAN, DAMAGED, write_list
-from support.tool.running import command, fails, finish, run, start, usage_error, wait_until
+from support.tool.running import CLEAN, DAMAGED, command, fails, finish, run, start, usage_error, wait_until, write_list
 
 RUN = "check --list jobs.jsonl --results results.jsonl"
 RESULTS = Path("results.jsonl")

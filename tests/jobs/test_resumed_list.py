@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CLEAN, CROSSING, DAMAGED, read_results, write_list
-from support.tool.running import fails, finish, limited_to, run, start, wait_until
+from support.tool.running import (
+    CLEAN, CROSSING, DAMAGED, fails, finish, limited_to, read_results, run, start, wait_until, write_list,
+)
 
 RUN = "check --list small.jsonl --results results.jsonl"
 RESULTS = Path("results.jsonl")

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.jobs import CLEAN, write_list
 from support.tool.reading import read_json, read_json_lines
 from support.tool.recordings import fold
-from support.tool.running import command, finish, run, start, wait_until
+from support.tool.running import CLEAN, command, finish, run, start, wait_until, write_list
 
 RESULTS = Path("results.jsonl")
 

@@ -1,10 +1,10 @@
 /* The measures of a recording: residuals of rigid motion, softness, speed, contacts and intersections. */
 #include "models/common/motion.h"
 #include "models/common/vec3.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/models/bodies.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/tool_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -11,12 +11,11 @@ import pytest
 from recording_file import heat, read_contacts
 from replayed import report_of, write
 from report_file import Report
-from support.tool.boxes import SIDES, box, corners_of
-from support.tool.jobs import CLEAN, write_list
-from support.tool.ply import read_ply
+from support.tool.exported import read_ply
+from support.tool.mesh_files import SIDES, box, corners_of
 from support.tool.reading import read_json
 from support.tool.recordings import Recording, cube, fold, spindle, tetrahedra, torus
-from support.tool.running import run
+from support.tool.running import CLEAN, run, write_list
 
 # ---- scene and plan
 

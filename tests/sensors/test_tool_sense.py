@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.pictures import png_size
+from support.tool.exported import png_size
 from support.tool.reading import read_csv, read_json
 from support.tool.recordings import Recording, tetrahedra
 from support.tool.running import fails, run, usage_error

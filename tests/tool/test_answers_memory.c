@@ -1,7 +1,7 @@
 /* Parts, rules and answers survive every failed allocation: they say so, and nothing leaks. And contacts without a frame are kept. */
 #include "tests/support/files.h"
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/tool_fixture.h"
 #include "tool/answers/answers.h"
 #include "tool/io/io.h"
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.boxes import box, cube
+from support.tool.exported import Vtp
+from support.tool.mesh_files import box, cube
 from support.tool.running import run
-from support.tool.vtp import Vtp
 
 KINDS = ("crossing", "coplanar", "folded", "duplicate", "touching")
 

@@ -12,12 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.boxes import box
+from support.tool.exported import Vtp, read_array
+from support.tool.mesh_files import box
 from support.tool.reading import read_contacts, read_csv, read_json
 from support.tool.recordings import cube
-from support.tool.report_page import read_array
 from support.tool.running import fails, run, usage_error
-from support.tool.vtp import Vtp
 
 SCENE = "wall.obj --object bar=bar_0007.obj --frames-of bar=bar_%04d.obj"
 FRAMES, APART = (7, 8, 9), 8

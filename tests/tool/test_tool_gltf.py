@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.gltf import write_glb
+from support.tool.mesh_files import write_glb
 from support.tool.reading import read_contacts
 from support.tool.running import fails, run, usage_error
 

@@ -3,10 +3,10 @@ from pathlib import Path
 
 import pytest
 
+from support.tool.mesh_files import write_soft_bar
 from support.tool.reading import CONTACT_COLUMNS, read_contacts, read_json
 from support.tool.recordings import tetrahedra
 from support.tool.running import fails, run, usage_error
-from support.tool.soft_bar import write_soft_bar
 
 FRAMES = 8
 BOTH = "wall.obj --object dart=dart.obj --frames-of dart=dart.pc2"

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from support.tool.mesh_files import write_soft_bar
 from support.tool.reading import read_json
 from support.tool.recordings import cube, fold, spindle, torus
 from support.tool.running import fails, run, usage_error
-from support.tool.soft_bar import write_soft_bar
 
 
 @pytest.fixture(scope="module")

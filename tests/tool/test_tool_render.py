@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.pictures import png_size, read_png
+from support.tool.exported import png_size, read_png
 from support.tool.recordings import Recording, cube, tetrahedra, torus
 from support.tool.running import fails, run, usage_error
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from support.tool.exported import read_page
 from support.tool.reading import read_json
 from support.tool.recordings import fold, tetrahedra
-from support.tool.report_page import read_page
 from support.tool.running import fails, finish, limited_to, run, start, usage_error
 
 

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from support.tool import page_cache
 from support.tool.recordings import fold, tetrahedra
-from support.tool.running import fails, finish, run, start, wait_until
+from support.tool.running import cached_pages, drop_from_cache, expect_cached, fails, finish, run, start, wait_until
 
 # ---- a cold disk
 
@@ -18,19 +17,19 @@ def test_the_disk_brings_the_next_frame():
     """Stops at a frame that is no mesh: the one behind it was asked of the disk before."""
     fold(60, 40, 6).write_sequence("cold_%04d.obj")
     Path("cold_0003.obj").write_text("nothing\n")
-    dropped = page_cache.drop("cold_0004.obj")
+    dropped = drop_from_cache("cold_0004.obj")
     fails("replay cold_0000.obj cold_%04d.obj --quiet", "cold_0003.obj")
     if dropped:
-        page_cache.expect_cached("cold_0004.obj")
+        expect_cached("cold_0004.obj")
 
 
 def test_the_disk_brings_no_frame_of_others():
     """No frame is brought that this machine does not need."""
     fold(60, 40, 6).write_sequence("own_%04d.obj")
-    dropped = page_cache.drop("own_0004.obj")
+    dropped = drop_from_cache("own_0004.obj")
     run("replay own_0000.obj own_%04d.obj --quiet --frames 0:3")
     if dropped:
-        assert page_cache.cached_pages("own_0004.obj")[0] == 0
+        assert cached_pages("own_0004.obj")[0] == 0
 
 
 # ---- late files

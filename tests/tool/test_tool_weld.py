@@ -3,11 +3,10 @@ from pathlib import Path
 
 import pytest
 
-from support.tool.gltf import write_glb
+from support.tool.mesh_files import write_glb, write_soft_bar
 from support.tool.reading import read_contacts
 from support.tool.recordings import Recording, cube, tetrahedra
 from support.tool.running import fails, run
-from support.tool.soft_bar import write_soft_bar
 
 CLOSED = "8 vertices, 18 edges, 12 triangles, Euler characteristic 2, closed, genus 0"
 

@@ -1,6 +1,6 @@
 /* What the console says to the tool: Ctrl-C ends it with the code of SIGINT, once it has written what it has. */
+#include "tests/support/io/recordings.h"
 #include "tests/support/test.h"
-#include "tests/support/tool/tool_fixture.h"
 
 #include <dirent.h>
 #include <fcntl.h>

@@ -1,10 +1,12 @@
-/* Dense linear systems for the tests on Windows, which has no LAPACKE: plain elimination with partial pivoting, on one thread. The tree
- * is compared with it, which makes plans by charge there. */
+/* Dense linear systems for the tests on Windows, which has no LAPACKE: plain elimination with partial pivoting, on
+ * one thread. The tree is compared with it, which makes plans by charge there. */
 #include "preprocess/baselines/dense/blas_choice.h"
 #include "preprocess/baselines/dense/dense.h"
+#include "src/core/baseline_library.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 /* No BLAS is linked here. */
 const char *blas_choice_name(void) {
@@ -81,4 +83,13 @@ void dense_substitute(const double *factors, uint32_t count, const int32_t *pivo
         vector[k] /= factors[(size_t)k * count + k];
         for (uint32_t row = 0; row < k; row++) vector[row] -= factors[(size_t)k * count + row] * vector[k];
     }
+}
+
+/* ---- in the place of the library ----------------------------------------------------------------------- */
+
+/* Stands in the place of libcscd-baselines in the tests on Windows and in WebAssembly, which have none. */
+cscd_status baseline_library_find(cscd_context *context, const char *entry_name, uint32_t interface,
+                                  const char *what, const void **out) {
+    *out = strcmp(entry_name, DENSE_ENTRY) == 0 ? dense_functions_of(interface) : NULL;
+    return *out != NULL ? CSCD_OK : context_fail(context, CSCD_SYSTEM_ERROR, "%s is not there", what);
 }

@@ -16,7 +16,7 @@ EXPAT_LIBS  := -lexpat
 TOOL_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lpng -lz -ljson-c -lexpat -lm
 TEST_LIBS   := -L$(WINDOWS_LIBRARIES)/lib -lcmocka-static $(TOOL_LIBS)
 # Tests alone have a dense solver, one of their own, to compare the tree with.
-BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c $(addprefix tests/windows/,dense_solve.c dense_library.c)
+BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c tests/windows/dense_solve.c
 
 # Without a library for Windows: GMP, FLINT and Arb. Without a meaning there: what Unix alone has. tests/windows/left_out.txt says
 # why each program is missing, and which tests of others are known to fail.

@@ -275,8 +275,6 @@ int oracle_kind(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
     return oracle_shared(a, b, names) == 0 ? CSCD_INTERSECTION_COPLANAR : CSCD_INTERSECTION_FOLDED;
 }
 
-/* ---- random meshes ------------------------------------------------------------------------------------- */
-
 /* ---- meshes -------------------------------------------------------------------------------------------- */
 
 static void make_points(random_stream *random, integer_scene *s) {

@@ -2,13 +2,10 @@
 import os
 from pathlib import Path
 
-from support.tool.jobs import read_results, write_list
-from support.tool.ply import read_ply
+from support.tool.exported import read_ply
+from support.tool.mesh_files import HALVES, SQUARE
 from support.tool.reading import read_json
-from support.tool.running import run
-
-SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
-HALVES = [(0, 1, 2), (0, 2, 3)]
+from support.tool.running import read_results, run, write_list
 
 
 def write_file(path, content):

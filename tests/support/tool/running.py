@@ -1,11 +1,17 @@
-"""Runs the built tool as a user would: a command line in; the exit code and both outputs out."""
+"""Runs the built tool as a user would: a command line in; the exit code and both outputs out. Lists of jobs."""
+import ctypes
+import json
+import mmap
 import os
 import resource
 import shlex
 import signal
 import subprocess
 import time
+from pathlib import Path
 from typing import NamedTuple
+
+from support.tool.reading import read_json_lines
 
 # With sanitizers, or in an emulator, programs take many times as long: tests repeat less.
 SLOW_MACHINE = "CSCD_RUNNER" in os.environ or os.path.basename(os.path.dirname(os.environ["CSCD_TOOL"])) in ("sanitize", "tsan")
@@ -97,3 +103,56 @@ def peak_kib(line):
     """
     ended = subprocess.run(["/usr/bin/time", "--format=%M", *command(line)], capture_output=True, text=True, check=True)
     return int(ended.stderr)
+
+
+# ---- lists of jobs, and their results
+
+SQUARE = "v 0 0 0\nv 4 0 0\nv 0 4 0\n"
+CLEAN = f"{SQUARE}f 1 2 3\n"
+CROSSING = f"{SQUARE}v 1 1 -1\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 6\n"
+DAMAGED = "v 0 0 0\nf 1 2 9\n"
+
+
+def write_list(path, *jobs):
+    """Writes a line for each job, as JSON."""
+    Path(path).write_text("".join(json.dumps(job) + "\n" for job in jobs), encoding="utf-8")
+
+
+def read_results(path):
+    """The lines of a file of results by their jobs, none of which is there twice."""
+    lines = read_json_lines(path)
+    results = {line["job"]: line for line in lines}
+    assert len(results) == len(lines)
+    return results
+
+
+# ---- which files the system has in memory
+
+
+def cached_pages(path):
+    """How many pages of a file are in memory, and how many it has."""
+    pages = -(-os.path.getsize(path) // mmap.PAGESIZE)
+    libc, found = ctypes.CDLL(None, use_errno=True), (ctypes.c_ubyte * pages)()
+    with open(path, "r+b") as file, mmap.mmap(file.fileno(), 0) as memory:
+        view = ctypes.c_char.from_buffer(memory)
+        status = libc.mincore(ctypes.c_void_p(ctypes.addressof(view)), ctypes.c_size_t(len(memory)), found)
+        del view
+    assert status == 0, os.strerror(ctypes.get_errno())
+    return sum(page & 1 for page in found), pages
+
+
+def drop_from_cache(path):
+    """Takes a file out of memory; returns whether the system did so."""
+    with open(path, "rb") as file:
+        os.fsync(file.fileno())
+        os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+    return cached_pages(path)[0] == 0
+
+
+def expect_cached(path):
+    """Waits until all of a file is in memory."""
+    def is_there():
+        found, pages = cached_pages(path)
+        return found == pages
+
+    wait_until(is_there, seconds=10)
