@@ -1,7 +1,6 @@
 /* Intersection curves on grids where everything degenerates: the piercings are those of polynomials that are written out, each
  * has the right number of pieces, and curves close where they must. */
 #include "src/mesh/surface.h"
-#include "tests/support/intersections/epsilon_oracle.h"
 #include "tests/support/intersections/grid_scene.h"
 #include "tests/support/test.h"
 

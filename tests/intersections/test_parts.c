@@ -1,6 +1,6 @@
 /* Intersections summed up by pair of parts: against sums that look at every list anew for every pair of parts. */
 #include "tests/support/calls.h"
-#include "tests/support/intersections/labelling.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

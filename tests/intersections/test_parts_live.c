@@ -1,6 +1,6 @@
 /* Labels of parts in a detector that moves over to another mesh, is cloned, is given wrong labels, or has no memory. */
 #include "tests/support/calls.h"
-#include "tests/support/intersections/labelling.h"
+#include "tests/support/intersections/body_rig.h"
 #include "tests/support/test.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The quick oracle of surfaces: its terms are those of polynomials that are written out, its numbers those of the slow one;
  * and the library agrees with it on all families of small scenes. make fuzz-surfaces does the same for a million. */
-#include "tests/support/intersections/epsilon_oracle.h"
+#include "tests/support/intersections/grid_scene.h"
 #include "tests/support/intersections/surface_oracle.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* Winding numbers on grids where everything degenerates: those of a ray in another direction, with every point written out
  * as a polynomial. */
 #include "tests/support/bvh/bvh_rig.h"
-#include "tests/support/intersections/epsilon_oracle.h"
+#include "tests/support/intersections/grid_scene.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>

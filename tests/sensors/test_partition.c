@@ -2,7 +2,6 @@
 #include "tests/support/calls.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
-#include "tests/support/sensors/partition_check.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 

@@ -1,7 +1,7 @@
 /* How many cells a part gets: kissing numbers, two convex objects, the cap; and which parts are convex. */
 #include "sensors/cells.h"
 #include "tests/support/calls.h"
-#include "tests/support/sensors/partition_check.h"
+#include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
 #include <math.h>

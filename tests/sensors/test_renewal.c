@@ -10,9 +10,9 @@
 
 enum { ROUNDS = PACED(50, 5), WALKED_SCENES = PACED(240, 36) };
 
-static scene body; /* large; one test at a time */
+static scene renewed; /* large; one test at a time */
 static double moved[SCENE_VERTICES_MAX * 3];
-static uint32_t particles[SCENE_VERTICES_MAX];
+static uint32_t walked[SCENE_VERTICES_MAX];
 static cscd_renewal renewals[SCENE_TRIANGLES_MAX];
 
 static const double origin[3] = {0.0, 0.0, 0.0};
@@ -27,11 +27,11 @@ typedef struct renewal_bench {
 
 /* Makes the components the parts, with cells at body.x0, and begins the renewal there. */
 static renewal_bench bench_create(uint32_t cells_max) {
-    renewal_bench b = {.rig = rig_create(&body, 1, NULL)};
-    b.partition = hand_partition_create(b.rig.mesh, body.x0, NULL, b.rig.mesh->component_count, cells_max);
+    renewal_bench b = {.rig = rig_create(&renewed, 1, NULL)};
+    b.partition = hand_partition_create(b.rig.mesh, renewed.x0, NULL, b.rig.mesh->component_count, cells_max);
     assert_int_equal(sensor_renewal_create(b.partition, &b.renewal), CSCD_OK);
-    sensor_renewal_follow(&b.renewal, b.partition, body.x0);
-    hand_partition_particles(b.partition, particles);
+    sensor_renewal_follow(&b.renewal, b.partition, renewed.x0);
+    hand_partition_particles(b.partition, walked);
     return b;
 }
 
@@ -44,7 +44,7 @@ static void bench_destroy(renewal_bench *b) {
 
 /* Returns how many parts are due at the positions `moved`, by the limits. */
 static uint32_t count_due(renewal_bench *b, const renewal_limits *limits) {
-    return sensor_renewal_check(&b->renewal, b->partition, moved, particles, limits, renewals);
+    return sensor_renewal_check(&b->renewal, b->partition, moved, walked, limits, renewals);
 }
 
 /* Undoes the half step that every second ring of a building block is turned by, which makes its quads fold
@@ -52,7 +52,7 @@ static uint32_t count_due(renewal_bench *b, const renewal_limits *limits) {
 static void straighten_rings(uint32_t first_vertex, double middle, uint32_t rings, uint32_t segments) {
     double angle = -3.14159265358979323846 / segments;
     for (uint32_t i = 0; i < rings * segments; i++) {
-        double *p = body.x0 + (size_t)(first_vertex + 1 + i) * 3, x = p[0] - middle, y = p[1];
+        double *p = renewed.x0 + (size_t)(first_vertex + 1 + i) * 3, x = p[0] - middle, y = p[1];
         if (i / segments % 2 == 0) continue;
         p[0] = middle + x * cos(angle) - y * sin(angle);
         p[1] = x * sin(angle) + y * cos(angle);
@@ -60,11 +60,11 @@ static void straighten_rings(uint32_t first_vertex, double middle, uint32_t ring
 }
 
 static void make_two_bodies(void) {
-    scene_clear(&body);
-    scene_add_sphere(&body, (double[3]){-4.0, 0.0, 0.0}, 0.5, 12, 16);
+    scene_clear(&renewed);
+    scene_add_sphere(&renewed, (double[3]){-4.0, 0.0, 0.0}, 0.5, 12, 16);
     straighten_rings(0, -4.0, 12, 16);
-    uint32_t first_of_second = body.vertex_count;
-    scene_add_capsule(&body, 6.0, 0.5, 24, 12);
+    uint32_t first_of_second = renewed.vertex_count;
+    scene_add_capsule(&renewed, 6.0, 0.5, 24, 12);
     straighten_rings(first_of_second, 0.0, 24, 12);
 }
 
@@ -72,10 +72,10 @@ static void make_two_bodies(void) {
 static void move_vertices(bool all, void (*how)(const double at[3], double amount, double out[3]),
                           double amount) {
     uint32_t first_of_second = 0;
-    while (body.x0[first_of_second * 3] < -2.0) first_of_second++;
-    memcpy(moved, body.x0, sizeof moved);
-    for (uint32_t v = all ? 0 : first_of_second; v < body.vertex_count; v++)
-        how(body.x0 + (size_t)v * 3, amount, moved + (size_t)v * 3);
+    while (renewed.x0[first_of_second * 3] < -2.0) first_of_second++;
+    memcpy(moved, renewed.x0, sizeof moved);
+    for (uint32_t v = all ? 0 : first_of_second; v < renewed.vertex_count; v++)
+        how(renewed.x0 + (size_t)v * 3, amount, moved + (size_t)v * 3);
 }
 
 static void grow_point(const double at[3], double amount, double out[3]) {
@@ -109,8 +109,8 @@ TEST(rest_and_rigid_motion_need_nothing) {
     renewal_bench b = bench_create(12);
     renewal_limits narrow = {.area_factor = 1.0 + 1e-9, .edge_length = 0.0};
     for (int i = 0; i < ROUNDS; i++) {
-        hand_partition_particles(b.partition, particles);
-        memcpy(moved, body.x0, sizeof moved);
+        hand_partition_particles(b.partition, walked);
+        memcpy(moved, renewed.x0, sizeof moved);
         assert_int_equal(count_due(&b, &narrow), 0);
         move_vertices(true, turn_point, random_unit());
         assert_int_equal(count_due(&b, &usual), 0);
@@ -182,10 +182,10 @@ TEST(bending_is_told_before_long_edges) {
 }
 
 static void flip_triangles(void) {
-    for (uint32_t t = 0; t < body.triangle_count; t++) {
-        uint32_t corner = body.triangles[t * 3];
-        body.triangles[t * 3] = body.triangles[t * 3 + 1];
-        body.triangles[t * 3 + 1] = corner;
+    for (uint32_t t = 0; t < renewed.triangle_count; t++) {
+        uint32_t corner = renewed.triangles[t * 3];
+        renewed.triangles[t * 3] = renewed.triangles[t * 3 + 1];
+        renewed.triangles[t * 3 + 1] = corner;
     }
 }
 
@@ -232,20 +232,20 @@ TEST(renewal_settles_one_part) {
 static void make_cross(void) {
     const uint32_t triangles[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1};
     const double points[15] = {0, 0, 0, 1, 0, 0, 0, 2, 0, -3, 0, 0, 0, -4, 0};
-    scene_clear(&body);
-    body.vertex_count = 5;
-    body.triangle_count = 4;
-    memcpy(body.triangles, triangles, sizeof triangles);
-    memcpy(body.x0, points, sizeof points);
+    scene_clear(&renewed);
+    renewed.vertex_count = 5;
+    renewed.triangle_count = 4;
+    memcpy(renewed.triangles, triangles, sizeof triangles);
+    memcpy(renewed.x0, points, sizeof points);
 }
 
 TEST(estimates_are_rectangles) {
     random_seed(7);
     make_cross();
     renewal_bench b = bench_create(1);
-    assert_true(fabs(sensor_renewal_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
+    assert_true(fabs(sensor_renewal_estimate(b.partition, renewed.x0, 0) - 24.0) < 1e-12);
     for (uint32_t v = 1; v < 5; v++) b.partition->vertex_cells[v] = 1; /* the edge out of a cell counts */
-    assert_true(fabs(sensor_renewal_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
+    assert_true(fabs(sensor_renewal_estimate(b.partition, renewed.x0, 0) - 24.0) < 1e-12);
     assert_true(fabs(b.renewal.first[0].area - 12.0) < 1e-12);
     bench_destroy(&b);
 }
@@ -253,13 +253,13 @@ TEST(estimates_are_rectangles) {
 /* Estimates the area of one of a sphere's dozen cells, and of a whole sphere that is one cell. */
 TEST(estimates_are_near_areas) {
     random_seed(8);
-    scene_clear(&body);
-    scene_add_sphere(&body, origin, 1.0, 24, 32);
+    scene_clear(&renewed);
+    scene_add_sphere(&renewed, origin, 1.0, 24, 32);
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         renewal_bench b = bench_create(cells);
         double sum = 0.0, area = 12.566 / b.partition->cell_count;
-        for (uint32_t v = 0; v < body.vertex_count; v++)
-            sum += sensor_renewal_estimate(b.partition, body.x0, v) / body.vertex_count;
+        for (uint32_t v = 0; v < renewed.vertex_count; v++)
+            sum += sensor_renewal_estimate(b.partition, renewed.x0, v) / renewed.vertex_count;
         assert_in_range((unsigned long)(100.0 * sum / area), 50, 250);
         bench_destroy(&b);
     }
@@ -269,13 +269,13 @@ TEST(estimates_are_near_areas) {
 TEST(walks_end_on_any_mesh) {
     random_seed(9);
     for (int i = 0; i < WALKED_SCENES; i++) {
-        scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &body);
+        scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &renewed);
         renewal_bench b = bench_create((uint32_t)random_integer(1, 6));
-        for (uint32_t k = 0; k < body.vertex_count * 3; k++) {
-            double x = body.x1[k];
+        for (uint32_t k = 0; k < renewed.vertex_count * 3; k++) {
+            double x = renewed.x1[k];
             moved[k] = i % 4 == 0 ? 0.0 : i % 4 == 1 ? round(x) : i % 4 == 2 ? x + random_unit() : x * 1e200;
         }
-        for (uint32_t v = 0; v < body.vertex_count; v++) {
+        for (uint32_t v = 0; v < renewed.vertex_count; v++) {
             double estimate = sensor_renewal_estimate(b.partition, moved, v);
             assert_true(i % 4 == 3 || (estimate >= 0.0 && isfinite(estimate)));
         }

@@ -1,5 +1,5 @@
-/* Small meshes with integer coordinates, so few of them that everything degenerates, and how they are moved: by
- * polynomials in epsilon. */
+/* Small meshes with integer coordinates, so few of them that everything degenerates, how they are moved, and their
+ * piercings and winding numbers by brute force: all by polynomials in epsilon. */
 #pragma once
 
 #include "cscd/surface.h"
@@ -110,3 +110,25 @@ typedef struct traced_scene {
 
 void traced_scene_make(grid_family family, uint64_t seed, traced_scene *out);
 void traced_scene_free(traced_scene *t);
+
+/* ---- piercings by brute force -------------------------------------------------------------------------- */
+
+/* Does the edge pass through the triangle, without a common vertex? */
+bool piercing_oracle_happens(const grid_scene *s, surface_piercing piercing);
+
+/* The limits of s, u, v and of the point: numerators and one denominator of each kind. */
+typedef struct exact_piercing_point {
+    int64_t s, s_sum;     /* s / s_sum */
+    int64_t u, v, uv_sum; /* u / uv_sum, v / uv_sum */
+    int64_t x[3];         /* x[k] / s_sum */
+} exact_piercing_point;
+
+exact_piercing_point piercing_oracle_point(const grid_scene *s, surface_piercing piercing);
+
+/* ---- winding numbers ----------------------------------------------------------------------------------- */
+
+/* So many vertices leave powers of epsilon for the point. */
+enum { WINDING_NAMES = 14 };
+
+/* The winding number of an object at the point, whose scene has no more vertices than that. */
+int winding_oracle_number(const grid_scene *s, corner_side at, uint32_t object);

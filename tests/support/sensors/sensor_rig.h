@@ -1,9 +1,11 @@
-/* A context, a mesh, a plan and sensors for a scene; and partitions made by hand. */
+/* A context, a mesh, a plan and sensors for a scene; partitions made by hand, and the invariants of every partition. */
 #pragma once
 
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
 #include "sensors/partition.h"
+#include "sensors/sensors.h"
+#include "tests/support/models/bodies.h"
 #include "tests/support/scenes.h"
 
 /* Any failure to make a rig fails the test. */
@@ -61,3 +63,25 @@ void hand_partition_destroy(sensor_partition *partition);
 
 /* Chooses a random vertex of each cell; `out` has room for as many as there are vertices. */
 void hand_partition_particles(const sensor_partition *partition, uint32_t *out);
+
+/* ---- partitions ---------------------------------------------------------------------------------------- */
+
+/* Checks that each vertex with a triangle is in one cell of a part that has most of its triangles, that
+ * cells are not empty, are numbered part by part and are connected, and that all lists agree. */
+void check_partition(const sensor_partition *partition);
+
+/* Makes sensors and checks their partition; the test fails when they cannot be made. */
+cscd_sensors *sensors_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                         const cscd_sensor_options *options);
+
+/* Bodies of about 600 triangles stand beside each other as the components of one mesh, scaled; and its
+ * sensors. */
+typedef struct sensor_row {
+    body b;
+    cscd_mesh *mesh;
+    cscd_sensors *sensors;
+} sensor_row;
+
+sensor_row row_of(uint32_t count, const body_kind *kinds, const double *scales,
+                  const cscd_sensor_options *options);
+void row_free(sensor_row *r);
