@@ -7,7 +7,7 @@
  *               long
  *   contacts    cscd_detector_step(): all contacts of a motion; cscd_mesh_stencil(): the weights behind each
  *   barrier     cscd_detector_find_near(): all pairs within a distance at one moment, in the form
- *               CSCD_NEAR_UNIQUE each once with its number
+ *               CSCD_NEAR_UNIQUE each once with its count
  *   certified   cscd_detector_max_step(): how far the vertices may go without contact;
  *               cscd_detector_set_separation()
  *   search      cscd_line_search_create(), _begin(), _max_step(), _find_near(): the same two, many times
@@ -36,14 +36,14 @@
  *               CSCD_BUSY and changes nothing. Contexts are independent. A mesh never changes: any contexts
  *               and threads use it, and call its functions, at once. A calling thread needs 256 KiB of stack.
  *               cscd/detector.h has the rules of callbacks and of fork
- *   errors      functions that can fail return cscd_status, and write *out only with CSCD_OK, or with
- *               CSCD_LIST_TOO_LONG how long the list would be. cscd_context_detail() then says what is wrong,
- *               where, and what to do. All may return CSCD_INVALID_ARGUMENT, CSCD_OUT_OF_MEMORY and, if an
- *               object is NULL, CSCD_NULL_OBJECT, without a sentence if that object had the context;
- *               functions name further ones. Objects stay valid after a failure, and the call may be
- *               repeated
- *   unchecked   functions without a cscd_status check nothing: give them a valid object and indices below its
- *               counts
+ *   errors      functions that can fail return cscd_status. They write *out only with CSCD_OK; with
+ *               CSCD_LIST_TOO_LONG it says how long the list would be. cscd_context_detail() then says what
+ *               is wrong, where, and what to do. All may return CSCD_INVALID_ARGUMENT, CSCD_OUT_OF_MEMORY
+ *               and, if an object is NULL, CSCD_NULL_OBJECT; functions name further ones. The last has no
+ *               sentence if the context itself is unknown. Objects stay valid after a failure, and the call
+ *               may be repeated
+ *   unchecked   functions without a cscd_status need a valid object, and indices below its counts, unless
+ *               they say otherwise
  *   defaults    options come from the _defaults() function and are then changed; {0} is refused. NULL options
  *               mean the defaults. Members of other structs that you do not need are 0
  *   versions    options, cscd_object_desc, cscd_object_change and cscd_plan_parts may grow: functions that

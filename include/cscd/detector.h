@@ -131,7 +131,7 @@ typedef struct cscd_context_options {
     size_t reason_size;
 } cscd_context_options;
 
-/* Gives the default options of a context. */
+/* Returns the default options of a context. */
 CSCD_API void cscd_context_defaults_sized(cscd_context_options *out, size_t size);
 static inline cscd_context_options cscd_context_defaults(void) {
     cscd_context_options options;
@@ -142,7 +142,7 @@ static inline cscd_context_options cscd_context_defaults(void) {
 /* Creates a context. SYSTEM_ERROR: the system refused a thread. */
 CSCD_API cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out);
 
-/* Gives the context back. Its objects keep what they need of it until the last of them is destroyed, but the
+/* Frees the context. Its objects keep what they need of it until the last of them is destroyed, but the
  * sentences of their failures can no longer be read. */
 CSCD_API void cscd_context_destroy(cscd_context *context);
 
@@ -330,7 +330,7 @@ static inline cscd_status cscd_mesh_create(cscd_context *context, const cscd_obj
     return cscd_mesh_create_sized(context, objects, sizeof *objects, object_count, out);
 }
 
-/* Gives the mesh back. */
+/* Frees the mesh. */
 CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
 
 /* Returns the context that the mesh was created in. */
@@ -558,8 +558,8 @@ typedef struct cscd_detector_options {
     bool (*ignore)(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b);
     void *ignore_user;
 
-    /* ignored_count pairs of triangles, in any order. Their intersections are left out, and contacts and
-     * proximities of features of which one is in (or is) the one triangle, the other in the other. */
+    /* ignored_count pairs of triangles, in any order. Their intersections are left out. So are contacts and
+     * proximities of a feature of the one triangle with a feature of the other, the triangles included. */
     const uint32_t *ignored;
     size_t ignored_count;
 
@@ -597,9 +597,9 @@ typedef struct cscd_detector_options {
 
     /* The most items of a list of contacts, intersections or proximities; 0, the default: any number. A
      * longer one fails with LIST_TOO_LONG and changes nothing; *out then has no items, but their number.
-     * EARLIEST drops later contacts of a component with itself instead. It does not bound what max_memory
-     * (cscd_intersection_options) bounds. In the form CSCD_NEAR_UNIQUE it
-     * bounds the pairs behind the items, in displacement bounds and truncation the near pairs. */
+     * EARLIEST drops later contacts of a component with itself instead. What max_memory bounds
+     * (cscd_intersection_options) is not bounded here. In the form CSCD_NEAR_UNIQUE the pairs behind the
+     * items count, in displacement bounds and truncation the near pairs. */
     size_t longest_list;
 
     cscd_coherence coherence; /* AUTO by default */
@@ -607,7 +607,7 @@ typedef struct cscd_detector_options {
     uint64_t ours;            /* the published methods: see cscd/research.h. 0 by default */
 } cscd_detector_options;
 
-/* Gives the default options of a detector. */
+/* Returns the default options of a detector. */
 CSCD_API void cscd_detector_defaults_sized(cscd_detector_options *out, size_t size);
 static inline cscd_detector_options cscd_detector_defaults(void) {
     cscd_detector_options options;
@@ -620,7 +620,7 @@ static inline cscd_detector_options cscd_detector_defaults(void) {
 CSCD_API cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 
-/* Gives the detector back, and with it its lists. */
+/* Frees the detector and its lists. */
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 
 /* Returns the mesh that the detector was created for. */

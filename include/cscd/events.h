@@ -90,7 +90,7 @@ CSCD_API cscd_status cscd_event_tracker_add_frame(cscd_event_tracker *tracker, u
 
 /* An event. What is joined within one frame is a *group*. The worst group has the greatest depth, then the
  * greatest length, then the most pairs, then (without depths and pairs) the most contacts, then the first
- * frame. It never grows. */
+ * frame. */
 typedef struct cscd_event {
     uint32_t a, b;        /* parts; a <= b */
     uint64_t first_frame; /* the number of the first frame that has something of it */

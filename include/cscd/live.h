@@ -1,5 +1,5 @@
-/* EXPERIMENTAL: what this header declares may change in a minor version. It has changes of meshes and
- * detectors between two calls. Part of cscd/cscd.h, which says what holds for every function. */
+/* EXPERIMENTAL: what this header declares may change in a minor version. Meshes and
+ * detectors change here between two calls. Part of cscd/cscd.h, which says what holds for every function. */
 #ifndef CSCD_LIVE_API_H
 #define CSCD_LIVE_API_H
 

@@ -50,7 +50,7 @@ typedef struct cscd_plan_options {
     double growing;
 } cscd_plan_options;
 
-/* Gives the default options of a plan. */
+/* Returns the default options of a plan. */
 CSCD_API void cscd_plan_defaults_sized(cscd_plan_options *out, size_t size);
 static inline cscd_plan_options cscd_plan_defaults(void) {
     cscd_plan_options options;

@@ -17,7 +17,7 @@ extern "C" {
  * vertices. Obstacles are watched neither for each other nor within themselves. */
 typedef struct cscd_sensors cscd_sensors;
 
-/* The kind of particles. Later versions may add values. */
+/* The kind of particles. */
 typedef enum cscd_sensor_method {
     /* One in every cell, drawn to the nearest particle of another object. */
     CSCD_SENSORS_CELLS,
@@ -130,7 +130,7 @@ typedef struct cscd_warning {
     double toi; /* the earliest time of such a contact; 0 if there is none */
 } cscd_warning;
 
-/* The reason for new cells of a part. Later versions may add values. */
+/* The reason for new cells of a part. */
 typedef enum cscd_renewal {
     CSCD_RENEWAL_NONE,
     CSCD_RENEWAL_AREA, /* a cell has become too large for one particle */

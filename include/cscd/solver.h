@@ -75,7 +75,7 @@ typedef struct cscd_proximity {
     double threshold; /* EE, after cscd_detector_set_rest: that of the mollifier (cscd_near_form); else 0 */
 } cscd_proximity;
 
-/* The form of a list of proximities. Later versions may add values.
+/* The form of a list of proximities.
  *
  * UNIQUE lists pairs with the same nearest points once, as VV or EV: the sum of count * energy(distance) is
  * that over all pairs, up to rounding. After cscd_detector_set_rest, two edges with c = |e_a x e_b|^2 below
@@ -256,7 +256,7 @@ CSCD_API cscd_status cscd_line_search_find_near(cscd_line_search *search, double
 
 /* The tests of single pairs, four points each, for hosts that find their pairs in another way. The threads of
  * the context share a batch. Results are those of cscd_detector_step and cscd_detector_find_near on a mesh
- * with just these features, bit for bit. These structs never grow. */
+ * with just these features, bit for bit. */
 
 /* Pairs of features of one kind. Features with a common point touch there all the time, so they do not belong
  * here. Of the four points of a pair,
