@@ -1,5 +1,5 @@
 /* Does method auto find out where culling pays? Beside none and single, on closed scenes, in contact and clear of it. */
-#include "benchmarks/lib/crossing_scenes.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "benchmarks/lib/options.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The saving by lists of pairs when little moves from one interval to the next: coherence on and off, side by
  * side. */
-#include "benchmarks/lib/deforming_body.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 

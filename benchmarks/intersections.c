@@ -1,7 +1,6 @@
 /* The cost of answers about intersections, compared with the plain check: curves, patches, overlaps, depths, what is
  * cut off, events. */
-#include "benchmarks/lib/crossing_scenes.h"
-#include "benchmarks/lib/deforming_body.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "benchmarks/lib/options.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Our part of the comparison with other programs: writes meshes that all of them read, and lists our pairs of triangles.
  * benchmarks/referee/compare.py runs it and the others. */
-#include "benchmarks/lib/crossing_scenes.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "cscd/cscd.h"
 #include "tool/io/json.h"
 #include "tool/io/mesh_file.h"

@@ -1,6 +1,6 @@
 /* The gain of cuts at run time: steps with one region, with those of the charge, and with those for the
  * motion, side by side. */
-#include "benchmarks/lib/deforming_body.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "benchmarks/lib/options.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The cost of a tear: the mesh is changed and the detector moves over, compared with the cost of the torn
  * object alone. */
-#include "benchmarks/lib/deforming_body.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "benchmarks/lib/options.h"
 #include "src/core/timer.h"
 

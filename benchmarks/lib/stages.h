@@ -2,7 +2,7 @@
  * the machine is at the moment. */
 #pragma once
 
-#include "benchmarks/lib/deforming_body.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "cscd/cscd.h"
 #include "tool/common/methods.h"
 

@@ -2,7 +2,7 @@
  * interval. */
 #include "benchmarks/peers/peer_scenes.h"
 
-#include "benchmarks/lib/deforming_body.h"
+#include "benchmarks/lib/made_scenes.h"
 #include "tool/io/animation.h"
 #include "tool/io/mesh_file.h"
 

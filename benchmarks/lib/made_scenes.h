@@ -1,11 +1,14 @@
-/* Bodies of any size that deform from frame to frame by about one edge length, with and without contact. */
+/* Scenes of any size that are made here: bodies that deform from frame to frame by about one edge length, with and
+ * without contact; and surfaces that pass through each other, at one moment. */
 #pragma once
 
+#include "models/shapes/body.h"
 #include "models/shapes/catalogue.h"
+#include "tool/io/io.h"
 #include "tool/io/mesh_file.h"
 
 typedef enum deformation {
-    DEFORM_WAVE, /* bends, waves and stretches; never touches itself: see deforming_body.c */
+    DEFORM_WAVE, /* bends, waves and stretches; never touches itself: see made_scenes.c */
     DEFORM_LEGS, /* of a figure: its legs pass through each other */
     DEFORM_PAIR  /* two given frames, the same interval every time */
 } deformation;
@@ -37,3 +40,32 @@ void deforming_body_interval(const deforming_body *b, uint32_t i, double shift, 
 
 /* Returns the root mean square distance that vertices move in interval 1, in edge lengths. */
 double deforming_body_speed(const deforming_body *b);
+
+/* ---- surfaces that cross ------------------------------------------------------------------------------- */
+
+/* figure    legs that pass through each other
+ * knot      a closed tube that passes through itself 14 times: much of it is buried
+ * spheres   27 balls, an object each, each in its neighbours
+ * scan      a bumpy torus with a spike for each 330 vertices, which runs into the surface next to it: many small curves
+ * clean     the same without spikes: no curve at all */
+typedef enum crossing_kind {
+    CROSSING_FIGURE,
+    CROSSING_KNOT,
+    CROSSING_SPHERES,
+    CROSSING_SCAN,
+    CROSSING_CLEAN
+} crossing_kind;
+
+const char *crossing_kind_name(crossing_kind kind);
+
+enum { CROSSING_OBJECTS_MAX = 27 };
+
+typedef struct crossing_scene {
+    const char *name;
+    uint32_t object_count;
+    body objects[CROSSING_OBJECTS_MAX]; /* in the same coordinates */
+} crossing_scene;
+
+/* Makes a scene of about this number of triangles. */
+bool crossing_scene_make(crossing_kind kind, uint32_t triangle_count, crossing_scene *out, io_error *error);
+void crossing_scene_free(crossing_scene *s);
