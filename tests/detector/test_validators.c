@@ -156,7 +156,7 @@ TEST(faults_of_detectors) {
           "an object's distance is not within the greatest");
     PLANT(detector_validate, d, d->config.pair_rules.component_objects[0], 2,
           "a component is of an object that there is not");
-    PLANT(detector_validate, d, d->space.bvh.leaf_flags[0].used, 0xfd, "the workers of a leaf are no prefix");
+    PLANT(detector_validate, d, d->space.bvh.leaf_flags[0].used, 0xfd, "the lanes of a leaf are no prefix");
     whole_set_destroy(&w);
 }
 
