@@ -268,7 +268,7 @@ static bool measure_cloth(const bench_options *o, row_list *rows, json *out, io_
     if (!bench_has_data(o, "cloth_ball")) return true;
     if (!deforming_body_read(o->data, "cloth_ball", 92, &b, error)) return false;
     cscd_object_desc desc = cscd_object_of_triangles(b.vertex_count, b.triangle_count, b.triangles);
-    moment m = {"cloth_ball 92", &desc, 1, b.vertex_count, b.triangle_count, b.last};
+    moment m = {"cloth_ball 92", &desc, 1, b.vertex_count, b.triangle_count, b.rest};
     bool good = measure_moment(&m, o, rows, out, error);
     m.name = "cloth_ball 93";
     m.positions = b.last;
