@@ -2,21 +2,11 @@
 import csv
 import io
 import json
-import re
 from pathlib import Path
 from typing import NamedTuple, Tuple
 
-_PAGE = (Path(__file__).parents[3] / "docs/artist/formats.md").read_text().split("## Contacts: ")[1].split("\n## ")[0]
-
-
-def _promised(names):
-    """The columns or members of contacts as the page of formats has them, without those that not all files have."""
-    assert names[:3] == ["frame", "kind", "toi"] and "bounded" in names, names
-    return names[:names.index("bounded")]
-
-
-CONTACT_COLUMNS = _promised(", ".join(re.findall(r"^\| ([a-z0-9_, ]+) \|", _PAGE, re.MULTILINE)[1:]).split(", "))
-CONTACT_MEMBERS = _promised(re.findall(r"`(\w+)`", _PAGE.split("per\nline: ")[1]))
+CONTACT_COLUMNS = "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz".split(",")
+CONTACT_MEMBERS = "frame kind toi a b u v point normal".split()
 
 
 def _refuse_constant(name):
