@@ -10,15 +10,6 @@
 
 /* ==== of a detector ======================================================================================== */
 
-/* The sums over all tries of a call. */
-typedef struct tries {
-    cscd_detector *detector;
-    cscd_timings timings;
-    cscd_counters counters;
-    bool any;
-    double done; /* estimated share of the call: each try takes half of what is left */
-} tries;
-
 static void add_timings(cscd_timings *sum, const cscd_timings *more) {
     sum->update_ms += more->update_ms;
     sum->orientation_ms += more->orientation_ms;
@@ -54,15 +45,18 @@ static void add_counters(cscd_counters *sum, const cscd_counters *more) {
 
 _Static_assert(offsetof(cscd_counters, reserved) == 21 * sizeof(uint64_t), "add_counters adds every counter");
 
-/* Withdraws the previous try first, because the vertices did not go to its end. */
-static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
-    tries *t = of;
-    step_outcome found;
+void tries_withdraw(tries *t) {
     if (t->any) step_withdraw(t->detector);
+    t->any = false;
+}
+
+cscd_status tries_find(tries *t, const double *from, const double *to, cscd_mode mode, cscd_contacts *out) {
+    step_outcome found;
+    tries_withdraw(t);
     t->any = true;
     progress_part(&t->detector->context->progress, t->done, 0.5 + 0.5 * t->done);
     t->done = 0.5 + 0.5 * t->done;
-    cscd_status status = step_find(t->detector, from, to, CSCD_MODE_EARLIEST, true, &found);
+    cscd_status status = step_find(t->detector, from, to, mode, true, &found);
     if (status != CSCD_OK) return status;
     add_timings(&t->timings, &found.timings);
     add_counters(&t->counters, &found.counters);
@@ -70,17 +64,27 @@ static cscd_status try_motion(void *of, const double *from, const double *to, cs
     return CSCD_OK;
 }
 
-static cscd_status check_method(const cscd_detector *d) {
-    if (!d->config.traits->loses_contacts) return CSCD_OK;
-    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                        "cscd_detector_max_step: method %s loses contacts and certifies nothing",
-                        d->config.traits->name);
+cscd_status tries_fail(tries *t, cscd_status status) {
+    tries_withdraw(t);
+    return detector_fail_call(t->detector, status);
 }
 
-/* Withdraws what a failed call has tried, and passes the status on. */
-static cscd_status fail_tries(const tries *t, cscd_status status) {
-    if (t->any) step_withdraw(t->detector);
-    return detector_fail_call(t->detector, status);
+void tries_end(const tries *t, double since) {
+    cscd_detector *d = t->detector;
+    d->results.timings = t->timings;
+    d->results.counters = t->counters;
+    timer_lap(&since, &d->results.timings.total_ms);
+}
+
+static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
+    return tries_find(of, from, to, CSCD_MODE_EARLIEST, out);
+}
+
+cscd_status certified_check_method(const cscd_detector *d, const char *function) {
+    if (!d->config.traits->loses_contacts) return CSCD_OK;
+    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                        "%s: method %s loses contacts and certifies nothing", function,
+                        d->config.traits->name);
 }
 
 cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_step *out) {
@@ -97,11 +101,9 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_
     const step_quest quest = {d->context, d->config.options.step_factor, 1.0, try_motion, &t};
     if (status == CSCD_OK) status = free_step_find(&quest, m, d->reached, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);
-    if (status != CSCD_OK) return fail_tries(&t, status);
+    if (status != CSCD_OK) return tries_fail(&t, status);
     step_take(d, d->reached);
-    timer_lap(&since, &t.timings.total_ms);
-    d->results.timings = t.timings;
-    d->results.counters = t.counters;
+    tries_end(&t, since);
     return CSCD_OK;
 }
 
@@ -125,7 +127,7 @@ static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
     const double *from = NULL, *to = NULL;
     cscd_free_step step;
-    cscd_status status = check_method(detector);
+    cscd_status status = certified_check_method(detector, "cscd_detector_max_step");
     if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &from);
     if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &to);
     if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");

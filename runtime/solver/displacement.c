@@ -234,12 +234,6 @@ static const double shorter[] = {1.0,    1.0 - 0x1p-40, 1.0 - 0x1p-20, 1.0 - 0x1
                                  0.9375, 0.75,          0.5,           0.25,          0.0625};
 enum { SHORTER_COUNT = sizeof shorter / sizeof *shorter };
 
-/* The motion that a caller wants, and the scalar in which each object's positions are stored. */
-typedef struct wanted_motion {
-    const double *x0, *x1;
-    const cscd_scalar *scalars; /* per object; NULL: doubles */
-} wanted_motion;
-
 typedef struct truncation_work {
     const cscd_mesh *mesh;
     const uint32_t *names; /* of seams, whose vertices go alike; NULL: there are none */
@@ -445,10 +439,8 @@ static cscd_status reserve_planes(cscd_detector *d, size_t count, division_plane
     return out->planes != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
-/* Writes where the vertices go: docs/theory/displacement-bounds.md, lemmas 4 to 6, say what holds then. The vertices of a
- * seam go the same share. What the detector knows of x0, it then knows of the end. */
-static cscd_status find_truncation(cscd_detector *d, const wanted_motion *motion, double search_radius,
-                                   double *end, cscd_truncation *out) {
+cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
+                            cscd_truncation *out) {
     truncation_work work = {d->mesh, d->config.exclusions.names, motion, .farthest = 0.5 * search_radius,
                             .end = end};
     size_t *first;
@@ -475,10 +467,8 @@ static cscd_status find_truncation(cscd_detector *d, const wanted_motion *motion
 
 /* ---- cscd_detector_truncate ---------------------------------------------------------------------------- */
 
-/* The positions that are reached are compared with the planes in the scalar in which they are written, and a vertex
- * must be able to stay where it is. */
-static cscd_status choose_scalars(cscd_detector *d, const cscd_view *x0, const cscd_mutable_view *reached,
-                                  const cscd_scalar **out) {
+cscd_status truncation_scalars(cscd_detector *d, const char *function, const cscd_view *x0,
+                               const cscd_mutable_view *reached, const cscd_scalar **out) {
     uint32_t count = d->mesh->object_count;
     if (reached == NULL) return CSCD_OK;
     if (d->scalars == NULL) d->scalars = context_allocate(d->context, count, 2 * sizeof *d->scalars);
@@ -489,9 +479,9 @@ static cscd_status choose_scalars(cscd_detector *d, const cscd_view *x0, const c
     for (uint32_t i = 0; i < count; i++) {
         if (d->scalars[i] == CSCD_SCALAR_DOUBLE && d->scalars[count + i] == CSCD_SCALAR_FLOAT)
             return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                                "cscd_detector_truncate: object %u has doubles in x0 and floats in reached, "
-                                "so its vertices could not stay where they are",
-                                i);
+                                "%s: object %u has doubles in x0 and floats in reached, so its vertices "
+                                "could not stay where they are",
+                                function, i);
     }
     return CSCD_OK;
 }
@@ -505,7 +495,7 @@ static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motio
     status = solver_reserve_reached(d);
     if (status == CSCD_OK) status = waiting_settle(&waiting, motion->x0);
     if (status == CSCD_OK) status = waiting_only_touching(&waiting, motion->x0);
-    if (status == CSCD_OK) status = find_truncation(d, motion, search_radius, d->reached, out);
+    if (status == CSCD_OK) status = truncation_find(d, motion, search_radius, d->reached, out);
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }
 
@@ -522,7 +512,7 @@ static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, 
     if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &motion.x0);
     if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &motion.x1);
     if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
-    if (status == CSCD_OK) status = choose_scalars(detector, x0, reached, &motion.scalars);
+    if (status == CSCD_OK) status = truncation_scalars(detector, "cscd_detector_truncate", x0, reached, &motion.scalars);
     if (status == CSCD_OK) status = truncate_between(detector, &motion, search_radius, &found);
     if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
     if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;

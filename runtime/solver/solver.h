@@ -26,7 +26,49 @@ cscd_status proximity_find(cscd_detector *d, const double *positions, double dis
 /* Makes room for the positions that a call reaches, d->reached. */
 cscd_status solver_reserve_reached(cscd_detector *d);
 
+/* ---- truncation ---------------------------------------------------------------------------------------- */
+
+/* The motion that a caller wants, and the scalar in which each object's positions are stored. */
+typedef struct wanted_motion {
+    const double *x0, *x1;
+    const cscd_scalar *scalars; /* per object; NULL: doubles */
+} wanted_motion;
+
+/* Chooses the scalars of the positions that are reached, which are compared with the planes as they are written.
+ * INVALID_ARGUMENT: a vertex could not stay where it is; the sentence begins with the name of the function. */
+cscd_status truncation_scalars(cscd_detector *d, const char *function, const cscd_view *x0,
+                               const cscd_mutable_view *reached, const cscd_scalar **out);
+
+/* Writes where the vertices go: docs/theory/displacement-bounds.md, lemmas 4 to 6, say what holds then. The vertices of a
+ * seam go the same share. What the detector knows of x0, it then knows of the end. The positions have been checked. */
+cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
+                            cscd_truncation *out);
+
 /* ---- certified steps ----------------------------------------------------------------------------------- */
+
+/* INVALID_ARGUMENT, with a sentence that begins with the function's name, if the method loses contacts. */
+cscd_status certified_check_method(const cscd_detector *d, const char *function);
+
+/* The searches of a call, of which at most the last one is taken, and the sums over them. */
+typedef struct tries {
+    cscd_detector *detector;
+    cscd_timings timings;
+    cscd_counters counters;
+    bool any;
+    double done; /* estimated share of the call: each try takes half of what is left */
+} tries;
+
+/* Finds what falls below its floor between two moments. Withdraws the previous try first, because the vertices did not go to
+ * its end. */
+cscd_status tries_find(tries *t, const double *from, const double *to, cscd_mode mode, cscd_contacts *out);
+
+void tries_withdraw(tries *t);
+
+/* Ends a call that has failed, and passes the status on. */
+cscd_status tries_fail(tries *t, cscd_status status);
+
+/* Ends a call that has begun at `since`: its timings and counters are the sums. */
+void tries_end(const tries *t, double since);
 
 /* Finds the longest step of a motion that is certified free of contact, by the stages of a step. The motion's
  * positions have been checked. The positions that are reached are d->reached; timings and
