@@ -61,6 +61,7 @@
 #define CSCD_H
 
 #include <cscd/detector.h>
+#include <cscd/energy.h>
 #include <cscd/events.h>
 #include <cscd/live.h>
 #include <cscd/plan.h>

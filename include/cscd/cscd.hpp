@@ -9,7 +9,7 @@
  *     for (const cscd_contact &contact : detector.step(x0, x1)) ...
  *
  * What holds for all of it:
- *   objects     context, mesh, plan, detector, line_search, event_tracker and mesh_change are moved and not copied. Each keeps what it was made
+ *   objects     context, mesh, plan, detector, line_search, energy, event_tracker and mesh_change are moved and not copied. Each keeps what it was made
  *               from, so they may go in any order. One that was moved from may be destroyed or assigned to; its
  *               calls fail, but functions that only ask, such as vertex_count(), must not be called. get() gives
  *               the object of C, for what has no class here; C objects made from it go before the C++ ones
@@ -34,6 +34,7 @@
 #include <cscd/context.hpp>
 #include <cscd/cscd.h>
 #include <cscd/detector.hpp>
+#include <cscd/energy.hpp>
 #include <cscd/error.hpp>
 #include <cscd/events.hpp>
 #include <cscd/lists.hpp>

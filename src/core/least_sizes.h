@@ -10,6 +10,7 @@
 #define LEAST_cscd_context_options      STRUCT_THROUGH(cscd_context_options, reason_size)
 #define LEAST_cscd_object_desc          STRUCT_THROUGH(cscd_object_desc, normal)
 #define LEAST_cscd_detector_options     STRUCT_THROUGH(cscd_detector_options, ours)
+#define LEAST_cscd_energy_options       STRUCT_THROUGH(cscd_energy_options, slip)
 #define LEAST_cscd_event_options        STRUCT_THROUGH(cscd_event_options, max_memory)
 #define LEAST_cscd_object_change        STRUCT_THROUGH(cscd_object_change, triangle_origins)
 #define LEAST_cscd_plan_options         STRUCT_THROUGH(cscd_plan_options, growing)

@@ -238,6 +238,7 @@ static void expect_nothing_left(const proof *p) {
 static void destroy_all(proof *p) {
     cscd_event_tracker_destroy(p->tracker);
     cscd_event_tracker_destroy(p->later);
+    cscd_energy_destroy(p->energy);
     cscd_line_search_destroy(p->line);
     cscd_detector_destroy(p->clone);
     cscd_detector_destroy(p->detector);

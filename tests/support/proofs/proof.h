@@ -65,6 +65,7 @@ typedef struct proof {
     cscd_detector *detector, *clone;
     cscd_line_search *line;
     cscd_event_tracker *tracker, *later;
+    cscd_energy *energy;
     void *own; /* of the row, which frees it in `close` */
 
     /* What the call at hand writes. A call that fails must leave all of it as it was. */
@@ -76,6 +77,9 @@ typedef struct proof {
         cscd_detector *detector;
         cscd_line_search *line;
         cscd_event_tracker *tracker;
+        cscd_energy *energy;
+        cscd_energy_pattern pattern;
+        cscd_energy_sum energy_sum;
         cscd_contacts contacts;
         cscd_intersections pairs;
         cscd_proximities near;

@@ -1,0 +1,168 @@
+/* Energies of near pairs: laws of distance, derivatives of single pairs, sums over lists in a fixed order, and friction. */
+#pragma once
+
+#include "cscd/energy.h"
+#include "src/mesh/mesh.h"
+
+/* ---- laws ---------------------------------------------------------------------------------------------- */
+
+/* A function of one variable, with two derivatives. */
+typedef struct energy_curve {
+    double value, slope, curvature;
+} energy_curve;
+
+/* The natural logarithm of a normal number above 0, to 2 ulp. It has the same bits on every processor, which libm does not
+ * promise. */
+double natural_logarithm(double x);
+
+/* The law at a distance, without stiffness and weight. At or below the separation a barrier has the value INFINITY and
+ * no slope. */
+energy_curve energy_law_at(const cscd_energy_options *options, double distance, double separation);
+
+/* ---- pairs --------------------------------------------------------------------------------------------- */
+
+/* The nearest features of a pair, whose distance is that of the sum of weights[i] * x[i] from 0 at the best weights.
+ *
+ * The best weights are those that the pair has plus any amounts of `slides`: one for each direction in which a nearest
+ * point may slide along its feature. A slide adds up to 0, as the weights do. */
+typedef struct pair_frame {
+    double weights[4];     /* of the nearest points */
+    double normal[3];      /* the unit vector from b's nearest point to a's */
+    double tangents[2][3]; /* unit vectors across normal, the first ones along the slides */
+    double
+        slides[2]
+              [4];   /* how weights change while a nearest point slides by a unit of length along a tangent */
+    int slide_count; /* 0: two points; 1: a point and a line; 2: a plane, or two lines */
+    bool straight;   /* a half-space: the normal never turns */
+    double distance; /* of VH the height, below 0 behind the plane */
+} pair_frame;
+
+/* Finds the frame of an item at the positions, 3 doubles for each vertex. */
+void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *out);
+
+/* The number of vertices that an item has, one after the other from its first; the others repeat an earlier one. */
+static inline int energy_vertices_of(cscd_contact_kind kind) {
+    if (kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_VH) return 2;
+    return kind == CSCD_CONTACT_EV ? 3 : 4;
+}
+
+/* The factor of a pair that pair lists give it, and the distance that it is to keep. */
+static inline double energy_weight_of(const cscd_proximity *item) {
+    return item->count;
+}
+static inline double energy_separation_of(const cscd_proximity *item) {
+    (void)item;
+    return 0.0;
+}
+
+/* The energy of one item, and the derivatives that are wanted. */
+typedef struct energy_term {
+    double value, gap;
+    double (*gradient)[3]; /* of the four vertices; NULL: not wanted */
+    double (*hessian)[12]; /* 12 rows; NULL: not wanted */
+    bool project;
+} energy_term;
+
+/* Evaluates an item at the positions. A term with the value INFINITY or 0 has derivatives of 0. */
+void energy_pair_evaluate(const cscd_energy_options *options, const cscd_proximity *item, const double *x,
+                          energy_term *term);
+
+/* The force between an item's points along the normal, at these positions, and the frame there. */
+double energy_pair_force(const cscd_energy_options *options, const cscd_proximity *item, const double *x,
+                         pair_frame *frame);
+
+/* ---- eigenvectors -------------------------------------------------------------------------------------- */
+
+enum { SYMMETRIC_MAX = 9 };
+
+/* A symmetric matrix of up to nine rows; its first `size` rows and columns count. */
+typedef struct symmetric_matrix {
+    int size;
+    double m[SYMMETRIC_MAX][SYMMETRIC_MAX];
+} symmetric_matrix;
+
+/* Makes the matrix diagonal by Jacobi's rotations, and writes its eigenvectors to the columns of `vectors`. */
+void symmetric_diagonalize(symmetric_matrix *a, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]);
+
+/* ---- sums ---------------------------------------------------------------------------------------------- */
+
+/* The terms of a sum. */
+typedef struct energy_terms {
+    void (*evaluate)(const void *of, size_t i, energy_term *term);
+    const void *of;
+    size_t count;
+    /* Where the vertices of term 0 are, how many bytes later those of the next one, and how many of four each has. */
+    const void *vertices, *kinds;
+    size_t stride;
+} energy_terms;
+
+static inline const uint32_t *energy_term_vertices(const energy_terms *terms, size_t i) {
+    return (const uint32_t *)(const void *)((const char *)terms->vertices + i * terms->stride);
+}
+
+static inline int energy_term_size(const energy_terms *terms, size_t i) {
+    return energy_vertices_of(
+        *(const cscd_contact_kind *)(const void *)((const char *)terms->kinds + i * terms->stride));
+}
+
+/* Memory that sums keep from call to call. */
+typedef struct sum_memory {
+    double (*gradients)[4][3]; /* of a round of terms */
+    double (*hessians)[12][12];
+    double *values, *gaps;
+    size_t round;          /* the number of terms in a round */
+    uint32_t (*slots)[16]; /* per term and two of its vertices: the block's place in its row of the pattern */
+    size_t slot_capacity;
+} sum_memory;
+
+void sum_memory_free(cscd_context *context, sum_memory *memory);
+
+/* Sums all terms and writes the targets, of which NULL stands for none. INVALID_ARGUMENT: the pattern lacks a block. */
+cscd_status energy_sum_terms(cscd_context *context, const cscd_mesh *mesh, const energy_terms *terms,
+                             const cscd_energy_targets *targets, sum_memory *memory, cscd_energy_sum *out);
+
+/* Returns INVALID_ARGUMENT, with a sentence, unless the targets fit each other and the mesh. */
+cscd_status energy_targets_check(cscd_context *context, const cscd_mesh *mesh,
+                                 const cscd_energy_targets *targets);
+
+/* ---- patterns ------------------------------------------------------------------------------------------ */
+
+/* A pattern that belongs to the energy. */
+typedef struct owned_pattern {
+    size_t *rows;
+    uint32_t *columns;
+    size_t capacity;        /* of columns */
+    uint64_t *keys, *spare; /* row and column of blocks, to be sorted */
+    size_t key_capacity;
+} owned_pattern;
+
+void owned_pattern_free(cscd_context *context, owned_pattern *pattern);
+
+/* Lists the blocks of the diagonal, of both lists of terms and of a further pattern, which may be NULL. */
+cscd_status owned_pattern_make(cscd_context *context, const cscd_mesh *mesh, const energy_terms lists[2],
+                               const cscd_energy_pattern *others, owned_pattern *out);
+
+/* Returns INVALID_ARGUMENT, with a sentence, unless rows and columns ascend and are of the mesh. */
+cscd_status energy_pattern_check(cscd_context *context, const cscd_mesh *mesh,
+                                 const cscd_energy_pattern *pattern);
+
+/* ---- friction ------------------------------------------------------------------------------------------ */
+
+/* The friction of one pair, frozen. */
+typedef struct friction_term {
+    uint32_t vertices[4];
+    cscd_contact_kind kind;
+    double force; /* coefficient times normal force */
+    double weights[4];
+    double tangents[2][3];
+} friction_term;
+
+/* Friction of all pairs, for one displacement. */
+typedef struct friction_motion {
+    const friction_term *terms;
+    double slip;
+    const double *x0, *x1;
+} friction_motion;
+
+/* Evaluates the i-th term of a friction_motion. */
+void friction_term_evaluate(const void *motion, size_t i, energy_term *term);

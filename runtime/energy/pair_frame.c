@@ -1,0 +1,155 @@
+/* The nearest features of a pair: how its nearest points slide along them, and the directions across and along. */
+#include "runtime/energy/energy.h"
+
+#include "src/core/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- weights and slides -------------------------------------------------------------------------------- */
+
+/* The slide from one vertex towards another one, of b's points with the sign -1. */
+static void add_slide(pair_frame *f, int from, int to, double sign) {
+    double *slide = f->slides[f->slide_count++];
+    memset(slide, 0, 4 * sizeof *slide);
+    slide[from] = -sign;
+    slide[to] = sign;
+}
+
+static bool is_inside(double u) {
+    return u != 0.0 && u != 1.0;
+}
+
+/* The nearest point lies on the corners that weigh more than 0, as in the form CSCD_NEAR_UNIQUE. */
+static void slide_on_face(double u, double v, pair_frame *f) {
+    int on[3], count = 0;
+    if (u + v < 1.0) on[count++] = 1;
+    if (u > 0.0) on[count++] = 2;
+    if (v > 0.0) on[count++] = 3;
+    for (int i = 1; i < count; i++) add_slide(f, on[0], on[i], -1.0);
+}
+
+static void name_slides(const cscd_proximity *item, pair_frame *f) {
+    f->slide_count = 0;
+    if (item->kind == CSCD_CONTACT_VF) slide_on_face(item->u, item->v, f);
+    bool edge_a = item->kind == CSCD_CONTACT_EE || item->kind == CSCD_CONTACT_EV;
+    if (edge_a && is_inside(item->u)) add_slide(f, 0, 1, 1.0);
+    if (item->kind == CSCD_CONTACT_EE && is_inside(item->v)) add_slide(f, 2, 3, -1.0);
+}
+
+/* The sum of amounts[i] * x[i], where the amounts add up to 0: of differences, which are small where the points are
+ * near each other. */
+static void combine_points(const double *points[4], const double amounts[4], double out[3]) {
+    for (int k = 0; k < 3; k++) {
+        double sum = 0.0;
+        for (int i = 1; i < 4; i++) sum += amounts[i] * (points[i][k] - points[0][k]);
+        out[k] = sum;
+    }
+}
+
+/* ---- directions ---------------------------------------------------------------------------------------- */
+
+/* A slide along a direction this much shorter than its vector, as of two edges that are parallel, is none of its own. */
+static const double least_sine = 1e-13;
+
+static void take_off(double v[3], const double direction[3], double slide[4], const double of_direction[4]) {
+    double along = vec3_dot(v, direction);
+    vec3_add_scaled(v, -along, direction, v);
+    for (int i = 0; i < 4; i++) slide[i] -= along * of_direction[i];
+}
+
+/* Makes the slides those by a unit of length along orthogonal tangents; one along no direction goes away. */
+static void straighten_slides(const double *points[4], pair_frame *f) {
+    int count = 0;
+    for (int j = 0; j < f->slide_count; j++) {
+        double along[3], slide[4];
+        memcpy(slide, f->slides[j], sizeof slide);
+        combine_points(points, slide, along);
+        double whole = sqrt(vec3_dot(along, along));
+        for (int again = 0; again < 2 && count > 0; again++)
+            take_off(along, f->tangents[0], slide, f->slides[0]);
+        double length = sqrt(vec3_dot(along, along));
+        if (length == 0.0 || length <= least_sine * whole) continue;
+        for (int k = 0; k < 3; k++) f->tangents[count][k] = along[k] / length;
+        for (int i = 0; i < 4; i++) f->slides[count][i] = slide[i] / length;
+        count++;
+    }
+    f->slide_count = count;
+}
+
+static void normalize_vector(double v[3], double length) {
+    for (int k = 0; k < 3; k++) v[k] /= length;
+}
+
+/* A unit vector across a unit vector. */
+static void direction_across(const double n[3], double out[3]) {
+    int least = fabs(n[0]) <= fabs(n[1]) ? 0 : 1;
+    if (fabs(n[2]) < fabs(n[least])) least = 2;
+    double axis[3] = {0.0, 0.0, 0.0};
+    axis[least] = 1.0;
+    vec3_cross(n, axis, out);
+    normalize_vector(out, sqrt(vec3_dot(out, out)));
+}
+
+/* Completes the tangents: those that no point slides along. */
+static void add_tangents(pair_frame *f) {
+    if (f->slide_count == 0) direction_across(f->normal, f->tangents[0]);
+    if (f->slide_count < 2) vec3_cross(f->normal, f->tangents[0], f->tangents[1]);
+}
+
+/* ---- frames -------------------------------------------------------------------------------------------- */
+
+/* The plane's normal is that of the item; its length is 1, up to rounding. */
+static void frame_of_half_space(const cscd_proximity *item, const double *points[4], pair_frame *f) {
+    double apart[3];
+    f->straight = true;
+    memcpy(f->normal, item->normal, sizeof f->normal);
+    vec3_subtract(points[0], points[1], apart);
+    f->distance = vec3_dot(apart, f->normal);
+    add_tangents(f);
+}
+
+/* The normal of features that touch: the item's, or any other across the tangents. */
+static void normal_of_touch(const cscd_proximity *item, pair_frame *f) {
+    memcpy(f->normal, item->normal, sizeof f->normal);
+    for (int j = 0; j < f->slide_count; j++)
+        vec3_add_scaled(f->normal, -vec3_dot(f->normal, f->tangents[j]), f->tangents[j], f->normal);
+    double length = sqrt(vec3_dot(f->normal, f->normal));
+    if (length > 0.5)
+        normalize_vector(f->normal, length);
+    else
+        direction_across(f->slide_count > 0 ? f->tangents[0] : (const double[3]){0.0, 0.0, 1.0}, f->normal);
+}
+
+void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f) {
+    const double *points[4];
+    double apart[3];
+    for (int i = 0; i < 4; i++) points[i] = x + (size_t)item->vertices[i] * 3;
+    f->straight = false;
+    cscd_stencil_weights(item->kind, item->u, item->v, f->weights);
+    name_slides(item, f);
+    if (item->kind == CSCD_CONTACT_VH) {
+        frame_of_half_space(item, points, f);
+        return;
+    }
+    straighten_slides(points, f);
+    combine_points(points, f->weights, apart);
+    for (int again = 0; again < 2; again++) { /* the second time for what rounding has left */
+        for (int j = 0; j < f->slide_count; j++) take_off(apart, f->tangents[j], f->weights, f->slides[j]);
+    }
+    if (f->slide_count == 2) {
+        vec3_cross(f->tangents[0], f->tangents[1], f->normal);
+        f->distance = vec3_dot(apart, f->normal);
+        double sign = f->distance < 0.0 ? -1.0 : 1.0;
+        f->distance *= sign;
+        for (int k = 0; k < 3; k++) f->normal[k] *= sign;
+    } else {
+        f->distance = sqrt(vec3_dot(apart, apart));
+        for (int k = 0; k < 3; k++) f->normal[k] = apart[k];
+        if (f->distance > 0.0)
+            normalize_vector(f->normal, f->distance);
+        else
+            normal_of_touch(item, f);
+    }
+    add_tangents(f);
+}
