@@ -6,6 +6,11 @@
 
 /* ---- scenes -------------------------------------------------------------------------------------------- */
 
+typedef struct ipc_barrier_options {
+    double reach;     /* pairs nearer than this repel */
+    double stiffness; /* kappa: the factor of the barrier (CSCD_ENERGY_BARRIER) */
+} ipc_barrier_options;
+
 /* A closed body at rest, where it begins. An obstacle moves along `travel` and back in travel_seconds,
  * again and again, at an even speed except near its turning points. */
 typedef struct ipc_object {
@@ -65,6 +70,7 @@ typedef struct ipc_solver {
     cscd_mesh *mesh;
     cscd_detector *detector;
     cscd_line_search *line;
+    cscd_energy *barrier;
     double time;
     double *positions, *velocities; /* now; obstacles have velocity 0. The pointers change with steps */
     double *travels;                /* per vertex, 0 for bodies */
@@ -75,11 +81,14 @@ typedef struct ipc_solver {
     /* The time step in progress: */
     double *before, *predicted; /* start of the step; its end without inner forces */
     double *gradient, *direction;
-    double *end, *trial;                   /* end of the line; the verified point on it */
-    ipc_contacts contacts, trial_contacts; /* at `positions`, and at `trial` */
-    double energy;                         /* the minimised energy at `positions` */
-    double to_travel;                      /* share of the obstacles' travel at the end of the step */
-    bool arrived;                          /* obstacles are at the end of their way */
+    double *end, *trial;                /* end of the line; the verified point on it */
+    cscd_proximities near;              /* at `positions`, until the next line begins; then at `trial` */
+    cscd_energy_sum contacts, of_trial; /* the barrier at `positions`, and at `trial` */
+    double *hessian;                    /* of the barrier, in the places of its pattern */
+    size_t hessian_capacity;            /* in blocks */
+    double energy;                      /* the minimised energy at `positions` */
+    double to_travel;                   /* share of the obstacles' travel at the end of the step */
+    bool arrived;                       /* obstacles are at the end of their way */
     ipc_statistics statistics;
 } ipc_solver;
 
@@ -99,5 +108,9 @@ void ipc_solver_begin_step(ipc_solver *p);
 cscd_status ipc_solver_iterate(ipc_solver *p, bool *done);
 void ipc_solver_end_step(ipc_solver *p);
 
+/* Finds the barrier's energy at any positions with their near pairs, and its derivatives. */
+cscd_status ipc_solver_barrier(const ipc_solver *p, const double *positions, const cscd_proximities *near,
+                               const cscd_energy_targets *targets, cscd_energy_sum *out);
+
 /* Returns what a time step minimises, at any positions with their contacts: inertia, springs and barrier. */
-double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc_contacts *contacts);
+double ipc_solver_energy(const ipc_solver *p, const double *positions, const cscd_energy_sum *contacts);

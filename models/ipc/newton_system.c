@@ -1,4 +1,4 @@
-/* The linear system of a Newton step, never assembled, and its solution by conjugate gradients. */
+/* The linear system of a Newton step, and its solution by conjugate gradients. */
 #include "models/ipc/newton_system.h"
 #include "models/common/vec3.h"
 
@@ -52,7 +52,28 @@ static void invert_block(ipc_block *block) {
          (m[1] * m[2] - m[0] * m[4]) / determinant, (m[0] * m[3] - m[1] * m[1]) / determinant}};
 }
 
-void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *contacts) {
+/* Adds the block that the contacts have on the diagonal. */
+static void add_contact_block(ipc_block *sum, const ipc_system *s, uint32_t v) {
+    static const int places[6] = {0, 1, 2, 4, 5, 8};
+    for (size_t i = s->pattern.rows[v]; i < s->pattern.rows[v + 1]; i++) {
+        for (int k = 0; k < 6 && s->pattern.columns[i] == v; k++)
+            sum->m[k] += s->contacts[9 * i + (size_t)places[k]];
+    }
+}
+
+static void add_contact_product(const ipc_system *s, const double *x, double *out) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        for (size_t i = s->pattern.rows[v]; i < s->pattern.rows[v + 1]; i++) {
+            const double *m = s->contacts + 9 * i, *y = x + (size_t)s->pattern.columns[i] * 3;
+            for (size_t k = 0; k < 3; k++)
+                out[v * 3 + k] += m[3 * k] * y[0] + m[3 * k + 1] * y[1] + m[3 * k + 2] * y[2];
+        }
+    }
+}
+
+void ipc_system_set(ipc_system *s, const double *positions, const cscd_energy_pattern *pattern,
+                    const double *contacts) {
+    s->pattern = *pattern;
     s->contacts = contacts;
     ipc_springs_hessians(&s->springs, positions, s->hessians);
     for (uint32_t v = 0; v < s->vertex_count; v++) {
@@ -63,12 +84,8 @@ void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *
         add_spring(&s->inverses[s->springs.items[i].a], &s->hessians[i]);
         add_spring(&s->inverses[s->springs.items[i].b], &s->hessians[i]);
     }
-    for (size_t i = 0; i < contacts->count; i++) {
-        const ipc_contact *c = &contacts->items[i];
-        for (int k = 0; k < 4; k++)
-            add_outer(&s->inverses[c->vertices[k]], c->curvature * c->weights[k] * c->weights[k], c->normal);
-    }
     for (uint32_t v = 0; v < s->vertex_count; v++) {
+        add_contact_block(&s->inverses[v], s, v);
         if (s->inertia[v] > 0.0)
             invert_block(&s->inverses[v]);
         else
@@ -79,7 +96,7 @@ void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *
 void ipc_system_product(const ipc_system *s, const double *x, double *out) {
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) out[i] = s->inertia[i / 3] * x[i];
     ipc_springs_add_product(&s->springs, s->hessians, x, out);
-    ipc_contacts_add_product(s->contacts, x, out);
+    add_contact_product(s, x, out);
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         if (s->inertia[v] == 0.0) memset(out + (size_t)v * 3, 0, 3 * sizeof *out);
     }

@@ -1,4 +1,5 @@
-/* The energies of the IPC solver, springs and barrier, and the linear system of a Newton step, never assembled. */
+/* The springs of the IPC solver, and the linear system of a Newton step: springs, which are never assembled, and the matrix of
+ * contacts that the library gives. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -49,64 +50,6 @@ void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessia
 /* Computes the area of each vertex: a third of that of its triangles. */
 void ipc_vertex_areas(const body *b, double *areas);
 
-/* ---- the barrier --------------------------------------------------------------------------------------- */
-
-/* A function of one variable, with its derivatives. */
-typedef struct ipc_curve {
-    double value, slope, curvature;
-} ipc_curve;
-
-/* Returns -(d - reach)^2 ln(d / reach) below the reach, 0 from there on, and infinity at 0 and below (Li
- * et al., "Incremental potential contact: intersection- and inversion-free, large-deformation dynamics",
- * 2020). Two derivatives are continuous at the reach. */
-ipc_curve ipc_barrier(double distance, double reach);
-
-/* Returns the factor of the energy of two edges: 1 where they cross at an angle, falling to 0 where they
- * are parallel, with one continuous derivative (same paper). crossing: the squared length of the edges'
- * cross product; threshold: the factor is 1 above it. */
-ipc_curve ipc_mollifier(double crossing, double threshold);
-
-/* ---- the barrier over all pairs of features nearer than its reach -------------------------------------- */
-
-/* One item of the list. Its Hessian is approximated by curvature * g g^T, where g, the gradient of the distance, is
- * weights[i] * normal at vertex i; see ipc_contacts_find. */
-typedef struct ipc_contact {
-    uint32_t vertices[4];
-    double weights[4], normal[3];
-    double gradient[4][3]; /* gradient of the energy */
-    double energy, curvature;
-} ipc_contact;
-
-/* Grows from {0}; ipc_contacts_free releases it. */
-typedef struct ipc_contacts {
-    ipc_contact *items;
-    size_t count, capacity;
-    double energy, least_distance; /* the sum of energies; the least distance, INFINITY without pairs */
-} ipc_contacts;
-
-typedef struct ipc_barrier_options {
-    double reach;     /* pairs nearer than this repel */
-    double stiffness; /* kappa: the factor of the barrier */
-} ipc_barrier_options;
-
-/* The terms of `near`, found at `positions` in the form without repetitions: each counts as many times as the pairs
- * of features that it stands for. So the sum is that over all pairs, and continuous, for each distance is; a sum
- * without the counts would jump where a nearest point passes from a face to its edge.
- *
- * The gradient is exact: how the nearest points slide along the features does not change the distance to
- * first order. The Hessian leaves out that they slide and the normal turns, slope * (Hessian of the
- * distance), which only ever takes curvature away while the features are convex and the slope negative; so
- * what is left is positive semidefinite, and the directions that come of it lead down. Pairs of edges that
- * are nearly parallel, whose nearest points jump, fade out; pairs of vertices and faces take over there. */
-void ipc_contacts_find(ipc_contacts *contacts, const double *positions, const cscd_proximities *near,
-                       const ipc_barrier_options *options);
-void ipc_contacts_free(ipc_contacts *contacts);
-
-void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient);
-
-/* Adds Hessian * x to out. */
-void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, double *out);
-
 /* ---- the linear system --------------------------------------------------------------------------------- */
 
 /* A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz. */
@@ -120,7 +63,8 @@ typedef struct ipc_system {
     uint32_t vertex_count;
     const double *inertia; /* per vertex: mass / (time step)^2 */
     ipc_springs springs;   /* not owned */
-    const ipc_contacts *contacts;
+    cscd_energy_pattern pattern;
+    const double *contacts;       /* in the places of the pattern, block by block */
     ipc_spring_hessian *hessians; /* per spring */
     ipc_block *inverses;          /* per vertex, of the matrix's diagonal */
     double *residual, *preconditioned, *search, *product;
@@ -130,8 +74,9 @@ typedef struct ipc_system {
 ipc_system ipc_system_make(uint32_t vertex_count, const double *inertia, const ipc_springs *springs);
 void ipc_system_free(ipc_system *s);
 
-/* Sets the matrix for these positions and contacts, which are not copied. */
-void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *contacts);
+/* Sets the matrix for these positions and these contacts, in blocks. The arrays are not copied. */
+void ipc_system_set(ipc_system *s, const double *positions, const cscd_energy_pattern *pattern,
+                    const double *contacts);
 
 /* Computes out = matrix * x; out is 0 at vertices without inertia. */
 void ipc_system_product(const ipc_system *s, const double *x, double *out);

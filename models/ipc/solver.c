@@ -25,6 +25,7 @@ static cscd_status open_detector(const ipc_object *objects, uint32_t count, cscd
     if (status == CSCD_OK)
         status = cscd_detector_set_rest(p->detector, CSCD_DOUBLES(p->shape.positions, p->shape.vertex_count));
     if (status == CSCD_OK) status = cscd_line_search_create(p->detector, &p->line);
+    if (status == CSCD_OK) status = cscd_energy_create(context, p->mesh, &p->barrier);
     return status;
 }
 
@@ -52,15 +53,21 @@ static void allocate_arrays(ipc_solver *p) {
     p->inertia = body_allocate(p->shape.vertex_count, sizeof *p->inertia);
 }
 
+cscd_status ipc_solver_barrier(const ipc_solver *p, const double *positions, const cscd_proximities *near,
+                               const cscd_energy_targets *targets, cscd_energy_sum *out) {
+    cscd_energy_options options = cscd_energy_defaults();
+    options.reach = p->scene->barrier.reach;
+    options.stiffness = p->scene->barrier.stiffness;
+    return cscd_energy_evaluate(p->barrier, near, CSCD_DOUBLES(positions, p->shape.vertex_count), &options,
+                                targets, out);
+}
+
 /* Finds the first contacts; the line search finds the later ones. */
 static cscd_status find_first_contacts(ipc_solver *p) {
-    const ipc_barrier_options *barrier = &p->scene->barrier;
-    cscd_proximities near;
     cscd_status status =
-        cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)),
-                                barrier->reach, CSCD_NEAR_UNIQUE, &near);
-    if (status == CSCD_OK) ipc_contacts_find(&p->contacts, p->positions, &near, barrier);
-    return status;
+        cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->positions, p->shape.vertex_count),
+                                p->scene->barrier.reach, CSCD_NEAR_UNIQUE, &p->near);
+    return status == CSCD_OK ? ipc_solver_barrier(p, p->positions, &p->near, NULL, &p->contacts) : status;
 }
 
 cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, cscd_context *context,
@@ -89,15 +96,14 @@ cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, csc
 }
 
 void ipc_solver_free(ipc_solver *p) {
+    cscd_energy_destroy(p->barrier);
     cscd_line_search_destroy(p->line);
     cscd_detector_destroy(p->detector);
     cscd_mesh_destroy(p->mesh);
     ipc_system_free(&p->system);
-    ipc_contacts_free(&p->contacts);
-    ipc_contacts_free(&p->trial_contacts);
     ipc_springs_free(&p->springs);
-    double *arrays[] = {p->positions, p->velocities, p->travels, p->before, p->predicted,
-                        p->gradient,  p->direction,  p->end,     p->trial,  p->inertia};
+    double *arrays[] = {p->positions, p->velocities, p->travels, p->before,  p->predicted, p->gradient,
+                        p->direction, p->end,        p->trial,   p->inertia, p->hessian};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     body_free(&p->shape);
     *p = (ipc_solver){0};
@@ -118,14 +124,14 @@ static void add_detection(ipc_solver *p, double since, double *stage) {
     p->statistics.detect_ms += spent;
 }
 
-double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc_contacts *contacts) {
+double ipc_solver_energy(const ipc_solver *p, const double *positions, const cscd_energy_sum *contacts) {
     double inertia = 0.0;
     for (uint32_t v = 0; v < p->shape.vertex_count; v++) {
         double away[3];
         vec3_subtract(positions + (size_t)v * 3, p->predicted + (size_t)v * 3, away);
         inertia += 0.5 * p->inertia[v] * vec3_dot(away, away);
     }
-    return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
+    return inertia + ipc_springs_energy(&p->springs, positions) + contacts->value;
 }
 
 /* Returns where coordinate i of an obstacle is at the end of the time step. */
@@ -143,34 +149,51 @@ static void aim_obstacles(ipc_solver *p) {
     }
 }
 
-/* Finds Newton's direction. The Hessian of the barrier makes bodies follow the obstacles that press them.
- * Returns the slope of the energy along the direction. */
-static double find_direction(ipc_solver *p) {
-    double slope = 0.0;
+/* Adds the barrier to the gradient, and gives its Hessian to the linear system. */
+static cscd_status add_barrier(ipc_solver *p) {
+    cscd_energy_pattern pattern;
+    cscd_status status = cscd_energy_make_pattern(p->barrier, &p->near, NULL, &pattern);
+    if (status != CSCD_OK) return status;
+    if (pattern.block_count > p->hessian_capacity) {
+        free(p->hessian);
+        p->hessian_capacity = 2 * pattern.block_count;
+        p->hessian = body_allocate(p->hessian_capacity, 9 * sizeof *p->hessian);
+    }
+    const cscd_energy_targets targets = {
+        .gradient = p->gradient, .matrix = p->hessian, .pattern = &pattern, .project = true, .add = true};
+    memset(p->hessian, 0, pattern.block_count * 9 * sizeof *p->hessian);
+    status = ipc_solver_barrier(p, p->positions, &p->near, &targets, &p->contacts);
+    if (status == CSCD_OK) ipc_system_set(&p->system, p->positions, &pattern, p->hessian);
+    return status;
+}
+
+/* Finds Newton's direction. The Hessian of the barrier makes bodies follow the obstacles that press them. *slope becomes that
+ * of the energy along the direction. */
+static cscd_status find_direction(ipc_solver *p, double *slope) {
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
         p->gradient[i] = p->inertia[i / 3] * (p->positions[i] - p->predicted[i]);
     ipc_springs_add_gradient(&p->springs, p->positions, p->gradient);
-    ipc_contacts_add_gradient(&p->contacts, p->gradient);
-    ipc_system_set(&p->system, p->positions, &p->contacts);
+    cscd_status status = add_barrier(p);
+    if (status != CSCD_OK) return status;
     aim_obstacles(p);
     p->statistics.conjugate_gradients +=
         ipc_system_solve(&p->system, p->gradient, solve_tolerance, GRADIENTS_MOST, p->direction);
-    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) slope += p->gradient[i] * p->direction[i];
-    return slope;
+    *slope = 0.0;
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) *slope += p->gradient[i] * p->direction[i];
+    return CSCD_OK;
 }
 
 /* Computes the energy at the trial point, `length` along the line. */
 static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) {
-    cscd_proximities near;
     double since = clock_now_ms();
     cscd_status status =
-        cscd_line_search_find_near(p->line, length, p->scene->barrier.reach, CSCD_NEAR_UNIQUE, &near);
+        cscd_line_search_find_near(p->line, length, p->scene->barrier.reach, CSCD_NEAR_UNIQUE, &p->near);
     add_detection(p, since, &p->statistics.near_ms);
+    if (status == CSCD_OK) status = ipc_solver_barrier(p, p->trial, &p->near, NULL, &p->of_trial);
     if (status != CSCD_OK) return status;
-    ipc_contacts_find(&p->trial_contacts, p->trial, &near, &p->scene->barrier);
-    p->statistics.near += near.count;
+    p->statistics.near += p->near.count;
     p->statistics.trials++;
-    *energy = ipc_solver_energy(p, p->trial, &p->trial_contacts);
+    *energy = ipc_solver_energy(p, p->trial, &p->of_trial);
     return CSCD_OK;
 }
 
@@ -218,12 +241,10 @@ static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
 /* Moves the vertices to the trial point. */
 static void accept_trial(ipc_solver *p) {
     double *positions = p->positions;
-    ipc_contacts contacts = p->contacts;
     p->positions = p->trial;
-    p->contacts = p->trial_contacts;
+    p->contacts = p->of_trial;
     p->trial = positions;
-    p->trial_contacts = contacts;
-    p->statistics.least_distance = fmin(p->statistics.least_distance, p->contacts.least_distance);
+    p->statistics.least_distance = fmin(p->statistics.least_distance, p->contacts.least);
 }
 
 static double farthest_move(const ipc_solver *p) {
@@ -235,8 +256,12 @@ static double farthest_move(const ipc_solver *p) {
 
 cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
     bool found = false;
-    double slope = find_direction(p);
-    cscd_status status = search_line(p, slope, &found);
+    double slope;
+    cscd_status status = find_direction(p, &slope);
+    if (status == CSCD_OK) status = search_line(p, slope, &found);
+    if (status == CSCD_OK && !found) /* the list is again that at the positions */
+        status =
+            cscd_line_search_find_near(p->line, 0.0, p->scene->barrier.reach, CSCD_NEAR_UNIQUE, &p->near);
     if (status != CSCD_OK) return status;
     p->statistics.newton++;
     p->statistics.driven += !p->arrived;

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from ._library import library as _library
 from .detector import Detector
+from .energy import Energy, EnergySum
 from .errors import Cancelled, Error, InContact, ListTooLong
 from .files import FrameSequence, Recording, read, write_report
 from .intersections import Curve, Intersections, PartPairs
@@ -23,8 +24,8 @@ from .results import CONTACT_KINDS, INTERSECTION_KINDS, Contacts, Events, PairCo
 
 __version__: str = _library.cscd_version_string().decode()
 
-__all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Error", "Events",
-           "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
+__all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Energy", "EnergySum", "Error",
+           "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
            "LineSearch", "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan",
            "Points", "Proximities", "Recording", "Replay", "Scene", "Wires", "__version__", "contacts",
            "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay",

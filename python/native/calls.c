@@ -82,6 +82,27 @@ CALL_OF(line_search_find_near,
          cscd_proximities *out),
         cscd_line_search_find_near(search, fraction, distance, (cscd_near_form)form, out))
 
+/* ---- energies ------------------------------------------------------------------------------------------ */
+
+CALL_OF(energy_create, (host * h, const cscd_mesh *mesh, cscd_energy **out),
+        cscd_energy_create(h->context, mesh, out))
+CALL_OF(energy_make_pattern,
+        (host * h, cscd_energy *energy, const cscd_proximities *items, const cscd_energy_pattern *others,
+         cscd_energy_pattern *out),
+        cscd_energy_make_pattern(energy, items, others, out))
+CALL_OF(energy_evaluate,
+        (host * h, cscd_energy *energy, const cscd_proximities *items, const cscd_view *positions,
+         const cscd_energy_options *options, const cscd_energy_targets *targets, cscd_energy_sum *out),
+        cscd_energy_evaluate(energy, items, positions, options, targets, out))
+CALL_OF(energy_freeze_friction,
+        (host * h, cscd_energy *energy, const cscd_proximities *items, const cscd_view *positions,
+         const cscd_energy_options *options),
+        cscd_energy_freeze_friction(energy, items, positions, options))
+CALL_OF(energy_evaluate_friction,
+        (host * h, cscd_energy *energy, const cscd_view *x0, const cscd_view *x1,
+         const cscd_energy_targets *targets, cscd_energy_sum *out),
+        cscd_energy_evaluate_friction(energy, x0, x1, targets, out))
+
 /* ---- structs that the library returns: how each is passed is left to the compiler ---------------------- */
 
 #define RESULT_OF(name, arguments, call)                                                                     \

@@ -52,6 +52,10 @@ typedef struct struct_layout {
             LETTER_OF(((type *)0)->name)                                                                     \
     }
 
+/* A pointer to what the library writes, which _Generic cannot tell from an array. */
+#define WRITTEN_FIELD(type, name)                                                                            \
+    { #name, offsetof(type, name), sizeof(((type *)0)->name), sizeof(((type *)0)->name), 'p' }
+
 #define LAYOUT(name)                                                                                         \
     { #name, sizeof(cscd_##name), name##_members, sizeof name##_members / sizeof *name##_members }
 
@@ -220,6 +224,19 @@ FIELDS(pair_contact, FIELD(cscd_pair_contact, toi), FIELD(cscd_pair_contact, con
        FIELD(cscd_pair_contact, point), FIELD(cscd_pair_contact, normal))
 FIELDS(pair_distance, FIELD(cscd_pair_distance, distance), FIELD(cscd_pair_distance, u),
        FIELD(cscd_pair_distance, v), FIELD(cscd_pair_distance, point), FIELD(cscd_pair_distance, normal))
+FIELDS(energy_options, FIELD(cscd_energy_options, struct_size), FIELD(cscd_energy_options, law),
+       FIELD(cscd_energy_options, reach), FIELD(cscd_energy_options, stiffness),
+       FIELD(cscd_energy_options, physical), FIELD(cscd_energy_options, friction),
+       FIELD(cscd_energy_options, object_friction), FIELD(cscd_energy_options, item_friction),
+       FIELD(cscd_energy_options, slip))
+FIELDS(energy_pattern, FIELD(cscd_energy_pattern, rows), FIELD(cscd_energy_pattern, columns),
+       FIELD(cscd_energy_pattern, block_count))
+FIELDS(energy_targets, WRITTEN_FIELD(cscd_energy_targets, gradient),
+       WRITTEN_FIELD(cscd_energy_targets, blocks), WRITTEN_FIELD(cscd_energy_targets, matrix),
+       FIELD(cscd_energy_targets, pattern), FIELD(cscd_energy_targets, scalar_rows),
+       FIELD(cscd_energy_targets, project), FIELD(cscd_energy_targets, add))
+FIELDS(energy_sum, FIELD(cscd_energy_sum, value), FIELD(cscd_energy_sum, least),
+       FIELD(cscd_energy_sum, active), FIELD(cscd_energy_sum, infinite), FIELD(cscd_energy_sum, first))
 FIELDS(event_options, FIELD(cscd_event_options, struct_size), FIELD(cscd_event_options, rings),
        FIELD(cscd_event_options, gap), FIELD(cscd_event_options, part_count),
        FIELD(cscd_event_options, labels), FIELD(cscd_event_options, seams),
@@ -279,6 +296,10 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(pairs),
                                         LAYOUT(pair_contact),
                                         LAYOUT(pair_distance),
+                                        LAYOUT(energy_options),
+                                        LAYOUT(energy_pattern),
+                                        LAYOUT(energy_targets),
+                                        LAYOUT(energy_sum),
                                         LAYOUT(event_options),
                                         LAYOUT(event),
                                         LAYOUT(events)};

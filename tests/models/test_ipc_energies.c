@@ -1,9 +1,7 @@
-/* The energies of the IPC solver, compared with finite differences: barrier, mollifier, springs, near
- * pairs. */
+/* The springs of the IPC solver, compared with finite differences. */
 #include "models/common/vec3.h"
 #include "models/ipc/newton_system.h"
 #include "models/shapes/catalogue.h"
-#include "tests/support/calls.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 
@@ -12,50 +10,6 @@
 
 static void assert_close(double a, double b, double tolerance) {
     if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not within %g of %.17g", a, tolerance, b);
-}
-
-TEST(barrier_has_its_derivatives) {
-    const double reach = 0.03, small = 1e-6;
-    for (int i = 1; i < 100; i++) {
-        double d = reach * i / 100.0, h = small * d;
-        ipc_curve at = ipc_barrier(d, reach), below = ipc_barrier(d - h, reach),
-                  above = ipc_barrier(d + h, reach);
-        assert_true(at.value > 0.0 && at.slope < 0.0 && at.curvature > 0.0);
-        assert_close((above.value - below.value) / (2.0 * h), at.slope, 1e-6 * fabs(at.slope) + 1e-10);
-        assert_close((above.slope - below.slope) / (2.0 * h), at.curvature, 1e-6 * at.curvature + 1e-7);
-    }
-}
-
-/* The value and two derivatives go to 0 at the reach; the value exceeds every bound at 0. */
-TEST(barrier_begins_smoothly_and_has_no_end) {
-    ipc_curve before = ipc_barrier(1.0 - 1e-9, 1.0), at = ipc_barrier(1.0, 1.0), far = ipc_barrier(7.0, 1.0);
-    assert_close(before.value, 0.0, 1e-25);
-    assert_close(before.slope, 0.0, 1e-16);
-    assert_close(before.curvature, 0.0, 1e-8);
-    assert_true(at.value == 0.0 && at.slope == 0.0 && at.curvature == 0.0);
-    assert_true(far.value == 0.0 && far.slope == 0.0 && far.curvature == 0.0);
-    assert_true(ipc_barrier(0.0, 1.0).value == INFINITY);
-    for (double d = 0.5, last = 0.0; d > 1e-300; d *= 0.5) {
-        double value = ipc_barrier(d, 1.0).value;
-        assert_true(value > last);
-        last = value;
-    }
-    assert_true(ipc_barrier(1e-300, 1.0).value > 600.0);
-}
-
-TEST(mollifier_goes_from_none_to_all) {
-    const double threshold = 0.7, h = 1e-6;
-    assert_true(ipc_mollifier(0.0, threshold).value == 0.0);
-    assert_true(ipc_mollifier(threshold, threshold).value == 1.0);
-    assert_true(ipc_mollifier(2.0, threshold).slope == 0.0);
-    assert_close(ipc_mollifier(threshold * (1.0 - 1e-9), threshold).slope, 0.0, 1e-8);
-    for (int i = 1; i < 20; i++) {
-        double c = threshold * i / 20.0;
-        ipc_curve at = ipc_mollifier(c, threshold);
-        double below = ipc_mollifier(c - h, threshold).value, above = ipc_mollifier(c + h, threshold).value;
-        assert_close((above - below) / (2.0 * h), at.slope, 1e-8);
-        assert_close((above - 2.0 * at.value + below) / (h * h), at.curvature, 1e-3);
-    }
 }
 
 static const ipc_stuff stuff = {.density = 1.0, .membrane = 100.0, .solid = 500.0};
@@ -163,130 +117,5 @@ TEST(spring_hessians_are_semidefinite) {
         }
         ipc_springs_add_product(&springs, &hessian, (const double[6]){1.0}, turned);
         for (int k = 0; k < 6; k++) assert_close((gradient[1][k] - gradient[0][k]) / 2e-6, turned[k], 1e-8);
-    }
-}
-
-/* ---- pairs that are near ------------------------------------------------------------------------------ */
-
-/* Two tetrahedra, edge over edge or vertex over face, turned a little at random. */
-static const uint32_t tetrahedra[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 4, 6, 5, 4, 5, 7, 5, 6, 7, 6, 4, 7};
-
-typedef struct near_fixture {
-    cscd_context *context;
-    cscd_mesh *mesh;
-    cscd_detector *detector;
-    double x[24];
-} near_fixture;
-
-static const ipc_barrier_options barrier = {.reach = 0.3, .stiffness = 2.0};
-
-static near_fixture proximity_make(uint64_t seed, bool edges, double lean) {
-    static const double shape[12] = {-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, -1.0, -1.0};
-    random_stream random = stream_start(seed);
-    const cscd_object_desc desc = cscd_object_of_triangles(8, 8, tetrahedra);
-    near_fixture f;
-    assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(f.context, &desc, 1, &f.mesh), CSCD_OK);
-    assert_int_equal(detector_create_here(f.mesh, NULL, NULL, &f.detector), CSCD_OK);
-    for (int i = 0; i < 12; i++) f.x[i] = shape[i];
-    for (int v = 0; v < 4; v++) { /* turned over; the upper edge lies along (cos, sin) of the lean */
-        const double *p = shape + v * 3;
-        double *q = f.x + 12 + v * 3;
-        q[0] = p[0] * cos(lean) - p[1] * sin(lean) + (edges ? 0.1 : 0.6);
-        q[1] = p[0] * sin(lean) + p[1] * cos(lean) + 0.15;
-        q[2] = 0.12 - p[2];
-    }
-    for (int i = 0; i < 24; i++) f.x[i] += stream_between(&random, -0.01, 0.01);
-    return f;
-}
-
-static void proximity_free(near_fixture *f) {
-    cscd_detector_destroy(f->detector);
-    cscd_mesh_destroy(f->mesh);
-    cscd_context_destroy(f->context);
-}
-
-static void find_contacts(near_fixture *f, const double *x, ipc_contacts *contacts) {
-    cscd_proximities near;
-    assert_int_equal(set_rest_packed(f->detector, f->x), CSCD_OK);
-    assert_int_equal(find_unique_packed(f->detector, x, barrier.reach, &near), CSCD_OK);
-    ipc_contacts_find(contacts, x, &near, &barrier);
-}
-
-/* Checks the gradient along each coordinate; the pairs are found again at each point. */
-static void check_gradient(near_fixture *f, double tolerance) {
-    ipc_contacts contacts = {0}, moved = {0};
-    double gradient[24] = {0.0}, sum[3] = {0.0, 0.0, 0.0};
-    find_contacts(f, f->x, &contacts);
-    assert_true(contacts.count > 0 && contacts.energy > 0.0 && contacts.least_distance < barrier.reach);
-    ipc_contacts_add_gradient(&contacts, gradient);
-    for (int i = 0; i < 24; i++) {
-        double there[24], energies[2], h = 1e-7;
-        for (int side = 0; side < 2; side++) {
-            memcpy(there, f->x, sizeof there);
-            there[i] += side == 0 ? -h : h;
-            find_contacts(f, there, &moved);
-            energies[side] = moved.energy;
-        }
-        assert_close((energies[1] - energies[0]) / (2.0 * h), gradient[i], tolerance);
-        sum[i % 3] += gradient[i];
-    }
-    for (int k = 0; k < 3; k++) assert_close(sum[k], 0.0, 1e-12); /* they are inner forces */
-    ipc_contacts_free(&contacts);
-    ipc_contacts_free(&moved);
-}
-
-TEST(near_pairs_have_their_gradient) {
-    for (uint64_t seed = 0; seed < 40; seed++) {
-        near_fixture f = proximity_make(seed, seed % 2 == 0, 0.3 + 0.03 * (double)seed);
-        check_gradient(&f, 1e-5);
-        proximity_free(&f);
-    }
-}
-
-/* The edges are so nearly parallel that they fade: the mollifier's part of the gradient counts. */
-TEST(nearly_parallel_edges_have_their_gradient) {
-    for (uint64_t seed = 0; seed < 20; seed++) {
-        near_fixture f = proximity_make(seed, true, 0.012);
-        for (int v = 0; v < 8; v++) {
-            if (v % 4 >= 2) continue;
-            f.x[v * 3 + 1] = v < 4 ? 0.0 : 0.1 + (v == 4 ? -0.01 : 0.012);
-            f.x[v * 3 + 2] = v < 4 ? 0.0 : 0.1;
-        }
-        check_gradient(&f, 1e-5);
-        proximity_free(&f);
-    }
-}
-
-/* x . Hessian x is the sum of curvature * (change of distance)^2; differences give the change of each
- * distance. */
-TEST(near_pairs_have_their_curvature) {
-    for (uint64_t seed = 0; seed < 20; seed++) {
-        near_fixture f = proximity_make(seed, seed % 2 == 0, 0.9);
-        random_stream random = stream_start(1000 + seed);
-        ipc_contacts contacts = {0};
-        double direction[24], product[24] = {0.0}, expected = 0.0, there[24], h = 1e-6;
-        cscd_proximities near;
-        for (int i = 0; i < 24; i++) direction[i] = stream_between(&random, -1.0, 1.0);
-        find_contacts(&f, f.x, &contacts);
-        ipc_contacts_add_product(&contacts, direction, product);
-        for (size_t c = 0; c < contacts.count; c++) {
-            double distance[2] = {-1.0, -1.0};
-            for (int side = 0; side < 2; side++) {
-                for (int i = 0; i < 24; i++) there[i] = f.x[i] + (side == 0 ? -h : h) * direction[i];
-                assert_int_equal(find_unique_packed(f.detector, there, 2.0 * barrier.reach, &near), CSCD_OK);
-                for (size_t n = 0; n < near.count; n++) {
-                    const cscd_proximity *p = &near.items[n];
-                    if (memcmp(p->vertices, contacts.items[c].vertices, sizeof p->vertices) == 0)
-                        distance[side] = p->distance;
-                }
-            }
-            double change = (distance[1] - distance[0]) / (2.0 * h);
-            assert_true(contacts.items[c].curvature >= 0.0);
-            expected += contacts.items[c].curvature * change * change;
-        }
-        assert_close(directional_derivative(product, direction, 24), expected, 1e-5 * (1.0 + expected));
-        ipc_contacts_free(&contacts);
-        proximity_free(&f);
     }
 }

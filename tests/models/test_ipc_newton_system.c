@@ -14,27 +14,35 @@ enum { TRIANGLES = 60, CONTACTS = 30, FIXED = 5 };
 typedef struct system_fixture {
     body shape;
     ipc_springs springs;
-    ipc_contacts contacts;
+    cscd_energy_pattern pattern;
+    size_t *rows;
+    uint32_t *columns;
     ipc_system system;
-    double *inertia, *positions, *gradient, *x, *product;
+    double *contacts, *inertia, *positions, *gradient, *x, *product;
     uint32_t count; /* number of coordinates */
 } system_fixture;
 
+/* A full matrix of contacts, each a positive number times a square. */
 static void add_contacts(system_fixture *f, random_stream *random) {
-    f->contacts.items = body_allocate(CONTACTS, sizeof *f->contacts.items);
-    f->contacts.count = f->contacts.capacity = CONTACTS;
+    uint32_t n = f->shape.vertex_count;
+    f->rows = body_allocate(n + 1, sizeof *f->rows);
+    f->columns = body_allocate((size_t)n * n, sizeof *f->columns);
+    f->contacts = body_allocate((size_t)n * n, 9 * sizeof *f->contacts);
+    for (uint32_t v = 0; v <= n; v++) f->rows[v] = (size_t)v * n;
+    for (uint32_t i = 0; i < n * n; i++) f->columns[i] = i % n;
+    f->pattern = (cscd_energy_pattern){f->rows, f->columns, (size_t)n * n};
     for (int i = 0; i < CONTACTS; i++) {
-        ipc_contact *c = &f->contacts.items[i];
-        double u = stream_between(random, 0.0, 1.0), v = stream_between(random, 0.0, 1.0);
-        const double weights[4] = {1.0 - u, u, v - 1.0, -v};
-        for (uint32_t k = 0; k < 4; k++) {
-            c->vertices[k] =
-                (stream_below(random, f->shape.vertex_count / 4) * 4 + k) % f->shape.vertex_count;
-            c->weights[k] = weights[k];
+        double u = stream_between(random, 0.0, 1.0), v = stream_between(random, 0.0, 1.0), normal[3];
+        const double weights[4] = {1.0 - u, u, v - 1.0, -v}, curvature = stream_between(random, 0.0, 3000.0);
+        uint32_t vertices[4];
+        for (uint32_t k = 0; k < 4; k++) vertices[k] = (stream_below(random, n / 4) * 4 + k) % n;
+        for (int k = 0; k < 3; k++) normal[k] = stream_between(random, -1.0, 1.0);
+        vec3_normalize(normal);
+        for (size_t e = 0; e < 144; e++) {
+            size_t r = e / 12, c = e % 12, block = (size_t)vertices[r / 3] * n + vertices[c / 3];
+            f->contacts[9 * block + 3 * (r % 3) + c % 3] +=
+                curvature * weights[r / 3] * weights[c / 3] * normal[r % 3] * normal[c % 3];
         }
-        for (int k = 0; k < 3; k++) c->normal[k] = stream_between(random, -1.0, 1.0);
-        vec3_normalize(c->normal);
-        c->curvature = stream_between(random, 0.0, 3000.0);
     }
 }
 
@@ -58,12 +66,14 @@ static void make_system(system_fixture *f, uint64_t seed) {
         f->gradient[i] = stream_between(&random, -1.0, 1.0);
     }
     f->system = ipc_system_make(f->shape.vertex_count, f->inertia, &f->springs);
-    ipc_system_set(&f->system, f->positions, &f->contacts);
+    ipc_system_set(&f->system, f->positions, &f->pattern, f->contacts);
 }
 
 static void free_system(system_fixture *f) {
     ipc_system_free(&f->system);
-    ipc_contacts_free(&f->contacts);
+    free(f->rows);
+    free(f->columns);
+    free(f->contacts);
     ipc_springs_free(&f->springs);
     body_free(&f->shape);
     free(f->inertia);

@@ -91,20 +91,18 @@ static void judge_interval(judges *j, const double *from, const double *to) {
  * positions, and that the energy of all pairs is the same. */
 static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     cscd_proximities near;
-    ipc_contacts contacts = {0};
+    cscd_energy_sum contacts, pairs;
     assert_int_equal(set_rest_packed(detector, p->shape.positions), CSCD_OK);
     assert_int_equal(find_unique_packed(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
-    ipc_contacts_find(&contacts, p->positions, &near, &p->scene->barrier);
-    assert_int_equal(contacts.count, p->contacts.count);
-    assert_true(contacts.least_distance == p->contacts.least_distance);
-    assert_true(contacts.least_distance > p->scene->min_separation);
+    assert_int_equal(ipc_solver_barrier(p, p->positions, &near, NULL, &contacts), CSCD_OK);
+    assert_int_equal(near.count, p->near.count);
+    assert_true(contacts.least == p->contacts.least);
+    assert_true(contacts.least > p->scene->min_separation);
     assert_true(ipc_solver_energy(p, p->positions, &contacts) == p->energy);
-    double energy = contacts.energy;
     assert_int_equal(find_near_packed(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
-    ipc_contacts_find(&contacts, p->positions, &near, &p->scene->barrier);
-    assert_true(contacts.count >= p->contacts.count);
-    assert_true(fabs(contacts.energy - energy) <= 1e-12 * energy);
-    ipc_contacts_free(&contacts);
+    assert_int_equal(ipc_solver_barrier(p, p->positions, &near, NULL, &pairs), CSCD_OK);
+    assert_true(near.count >= p->near.count);
+    assert_true(fabs(pairs.value - contacts.value) <= 1e-12 * contacts.value);
 }
 
 /* Takes one time step and checks its line searches. */
@@ -163,9 +161,9 @@ TEST(links_bear_each_other) {
         mean_of(&p, i, below);
         vec3_subtract(below, above, between);
         assert_true(vec3_norm(between) > 0.5 && vec3_norm(between) < 2.1);
-        for (size_t c = 0; c < p.contacts.count; c++) {
-            uint32_t a = cscd_mesh_vertex_object(p.mesh, p.contacts.items[c].vertices[0]);
-            uint32_t b = cscd_mesh_vertex_object(p.mesh, p.contacts.items[c].vertices[3]);
+        for (size_t c = 0; c < p.near.count; c++) {
+            uint32_t a = cscd_mesh_vertex_object(p.mesh, p.near.items[c].vertices[0]);
+            uint32_t b = cscd_mesh_vertex_object(p.mesh, p.near.items[c].vertices[3]);
             if ((a == i && b == i - 1) || (b == i && a == i - 1)) {
                 loaded++;
                 break;
@@ -199,9 +197,9 @@ TEST(the_press_arrives_and_the_coil_gives_way) {
     assert_true(highest < low && low - highest < 2.0 * p.scene->barrier.reach);
     assert_true(highest - lowest < 2.6); /* 3.9 at rest */
     uint32_t own = 0;
-    for (size_t c = 0; c < p.contacts.count; c++)
-        own += p.contacts.items[c].vertices[0] < coil.vertex_count &&
-               p.contacts.items[c].vertices[3] < coil.vertex_count;
+    for (size_t c = 0; c < p.near.count; c++)
+        own += p.near.items[c].vertices[0] < coil.vertex_count &&
+               p.near.items[c].vertices[3] < coil.vertex_count;
     assert_true(own > 0);
     ipc_solver_free(&p);
     cscd_context_destroy(context);

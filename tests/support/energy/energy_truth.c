@@ -138,7 +138,7 @@ static wide curvature_by(const energy_case *c, int i, int j, wide h) {
 enum { LEVELS = 4 };
 
 /* Richardson's extrapolation of differences whose errors are even powers of the step. */
-static wide extrapolate(wide d[LEVELS]) {
+static wide extrapolate_levels(wide d[LEVELS]) {
     for (int order = 1; order < LEVELS; order++) {
         wide factor = powl(4.0L, order);
         for (int i = 0; i + order < LEVELS; i++) d[i] = (factor * d[i + 1] - d[i]) / (factor - 1.0L);
@@ -151,10 +151,10 @@ void energy_truth_derivatives(const energy_case *c, long double step, long doubl
     wide d[LEVELS];
     for (int i = 0; i < 12; i++) {
         for (int l = 0; l < LEVELS; l++) d[l] = slope_by(c, i, step / powl(2.0L, l));
-        gradient[i] = extrapolate(d);
+        gradient[i] = extrapolate_levels(d);
         for (int j = 0; j <= i; j++) {
             for (int l = 0; l < LEVELS; l++) d[l] = curvature_by(c, i, j, step / powl(2.0L, l));
-            hessian[i][j] = hessian[j][i] = extrapolate(d);
+            hessian[i][j] = hessian[j][i] = extrapolate_levels(d);
         }
     }
 }
