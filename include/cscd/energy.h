@@ -15,15 +15,15 @@ extern "C" {
  *
  *     stiffness * weight * mollifier * law(distance)
  *
- * Items come from cscd_detector_find_near or cscd_line_search_find_near at the same positions, in either form;
+ * The weight is that of the item: an area of convergent IPC after cscd_detector_set_rest, else its count. Items
+ * come from cscd_detector_find_near or cscd_line_search_find_near at the same positions, in either form;
  * both have one sum, up to rounding, which goes on smoothly where a pair changes from one kind to another. The
  * distance is that of the item's nearest features: two points, a point and a line, a point and a plane, or
  * two lines; so the derivatives are those of Li et al. (Incremental Potential Contact, 2020). They are exact
  * up to rounding, which grows as an edge or a face becomes small, and as two edges become parallel.
  *
- * Items may also be your own. Of each, kind, vertices, u, v, weight, separation and threshold are read, and of
- * VH the normal. An exact 0 or 1 in u and v, or u + v = 1 in a face, says that the nearest point is on the
- * border of a feature. */
+ * Items may also be your own. Of each, kind, vertices, weights, weight, separation, threshold and count are
+ * read, and of VH the normal. On the border of a feature some weights are exactly 0 (cscd_stencil). */
 
 /* An energy of a distance d, of which r is the reach and s the item's separation (Li et al. 2021, Codimensional
  * IPC). It is 0 from s + r on; below, with g = d - s:
@@ -52,7 +52,9 @@ typedef struct cscd_energy_options {
      * areas as weights the stiffness is then a pressure, whatever the reach (convergent IPC, Li et al. 2023).
      * False by default. */
     bool physical;
-    uint8_t reserved[7]; /* 0 */
+
+    bool by_count;       /* an item weighs its count (Li et al. 2020); false, the default: its weight */
+    uint8_t reserved[6]; /* 0 */
 
     /* For cscd_energy_freeze_friction: a coefficient for all pairs, 0 by default; or one for each object, of
      * which a pair has the geometric mean; or one for each item. The last array that is not NULL counts. */

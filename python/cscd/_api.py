@@ -23,6 +23,8 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_detector_set_rules": (c_uint32, [c_void_p, c_void_p, c_uint32, c_void_p, c_uint32]),
     "cscd_detector_set_seams": (c_uint32, [c_void_p, c_void_p, c_size_t]),
     "cscd_detector_set_separation": (c_uint32, [c_void_p, c_double, c_double]),
+    "cscd_energy_defaults_sized": (None, [c_void_p, c_size_t]),
+    "cscd_energy_destroy": (None, [c_void_p]),
     "cscd_event_defaults_sized": (None, [c_void_p, c_size_t]),
     "cscd_event_tracker_destroy": (None, [c_void_p]),
     "cscd_from_name": (c_bool, [c_uint32, c_char_p, c_void_p]),

@@ -108,14 +108,26 @@ static cscd_status take_options(cscd_context *context, const cscd_energy_options
     return status == CSCD_OK ? check_options(context, out) : status;
 }
 
+/* The weights of a's vertices are from 0 to 1, those of b's from -1 to 0, and they add up to 0, up to rounding. */
+static bool weights_fit(const cscd_proximity *p) {
+    const int first = p->kind == CSCD_CONTACT_EE || p->kind == CSCD_CONTACT_EV ? 2 : 1;
+    double sums[2] = {0.0, 0.0};
+    for (int i = 0; i < 4; i++) {
+        const double weight = i < first ? p->weights[i] : -p->weights[i];
+        if (!(weight >= 0.0 && weight <= 1.0)) return false;
+        sums[i >= first] += weight;
+    }
+    return fabs(sums[0] - 1.0) <= 1e-9 && fabs(sums[1] - 1.0) <= 1e-9;
+}
+
 static const char *fault_of_item(const cscd_mesh *mesh, const cscd_proximity *p) {
     if ((unsigned)p->kind > CSCD_CONTACT_VH || p->kind == CSCD_CONTACT_TT)
         return "has a kind without an energy";
     for (int i = 0; i < 4; i++) {
         if (p->vertices[i] >= mesh->vertex_count) return "names a vertex that the mesh does not have";
     }
-    if (!(p->u >= 0.0 && p->u <= 1.0 && p->v >= 0.0 && p->v <= 1.0)) return "has u or v outside of [0,1]";
-    if (!is_amount(energy_weight_of(p))) return "has a weight below 0 or without an end";
+    if (!weights_fit(p)) return "has weights that are not those of its kind (cscd_stencil)";
+    if (!is_amount(p->count)) return "has a weight below 0 or without an end";
     if (!is_amount(energy_separation_of(p))) return "has a separation below 0 or without an end";
     return p->threshold >= 0.0 ? NULL : "has a threshold below 0";
 }

@@ -47,7 +47,8 @@ static inline int energy_vertices_of(cscd_contact_kind kind) {
 }
 
 /* The factor of a pair that pair lists give it, and the distance that it is to keep. */
-static inline double energy_weight_of(const cscd_proximity *item) {
+static inline double energy_weight_of(const cscd_energy_options *options, const cscd_proximity *item) {
+    (void)options;
     return item->count;
 }
 static inline double energy_separation_of(const cscd_proximity *item) {
@@ -73,7 +74,7 @@ double energy_pair_force(const cscd_energy_options *options, const cscd_proximit
 
 /* ---- eigenvectors -------------------------------------------------------------------------------------- */
 
-enum { SYMMETRIC_MAX = 9 };
+enum { SYMMETRIC_MAX = 9, SQUARE_MAX = 5 };
 
 /* A symmetric matrix of up to nine rows; its first `size` rows and columns count. */
 typedef struct symmetric_matrix {
@@ -83,6 +84,17 @@ typedef struct symmetric_matrix {
 
 /* Makes the matrix diagonal by Jacobi's rotations, and writes its eigenvectors to the columns of `vectors`. */
 void symmetric_diagonalize(symmetric_matrix *a, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]);
+
+/* A diagonal matrix plus factor >= 0 times the square of a vector of length 1. At most two numbers of the diagonal are negative,
+ * and at least one is not. */
+typedef struct diagonal_and_square {
+    int size;
+    double diagonal[SQUARE_MAX], vector[SQUARE_MAX], factor;
+} diagonal_and_square;
+
+/* Finds the negative eigenvalues and their unit eigenvectors, and returns their number. */
+int diagonal_and_square_negative(const diagonal_and_square *m, double values[2],
+                                 double vectors[2][SQUARE_MAX]);
 
 /* ---- sums ---------------------------------------------------------------------------------------------- */
 

@@ -14,21 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- sums of products of a vector with itself ------------------------------------------------------------- */
-
-/* The lower triangle alone is formed, and then copied. */
-static void add_square(double (*hessian)[12], double factor, const double y[12]) {
-    for (int i = 0; i < 12; i++) {
-        double scaled = factor * y[i];
-        for (int j = 0; j <= i; j++) hessian[i][j] += scaled * y[j];
-    }
-}
-
-static void copy_lower_triangle(double (*hessian)[12]) {
-    for (int i = 0; i < 12; i++) {
-        for (int j = 0; j < i; j++) hessian[j][i] = hessian[i][j];
-    }
-}
+/* ---- Hessians of a distance's energy ------------------------------------------------------------------- */
 
 /* Adds w (x) v to y. */
 static void add_outer(const double w[4], const double v[3], double factor, double y[12]) {
@@ -41,100 +27,154 @@ static double dot_of_four(const double a[4], const double b[4]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
-/* ---- the Hessian of a distance's energy ---------------------------------------------------------------- */
+/* A Hessian by the directions of a pair's frame: the block of the vertices i and j is
+ *
+ *     along_ij n n^T + sum over tangents t_a of (mixed_ia w_j n t_a^T + mixed_ja w_i t_a n^T)
+ *     + w_i w_j sum of across_ab t_a t_b^T. */
+typedef struct frame_hessian {
+    double along[4][4], mixed[4][2], across[2][2];
+} frame_hessian;
 
 /* The pull across a pair, -E'/d; 0 where the normal never turns, and where there is no distance to divide by. */
 static double pull_of(const pair_frame *f, const energy_curve *c) {
     return f->straight || f->distance <= 0.0 ? 0.0 : -c->slope / f->distance;
 }
 
-static void add_plain_hessian(const pair_frame *f, const energy_curve *c, double (*hessian)[12]) {
-    double pull = pull_of(f, c), y[12] = {0.0};
-    add_outer(f->weights, f->normal, 1.0, y);
-    add_square(hessian, c->curvature, y);
-    if (pull == 0.0) return;
-    for (int j = 0; j < f->slide_count; j++) {
-        memset(y, 0, sizeof y);
-        add_outer(f->weights, f->tangents[j], 1.0, y);
-        add_outer(f->slides[j], f->normal, f->distance, y);
-        add_square(hessian, pull, y);
+static void set_frame_hessian(const pair_frame *f, const energy_curve *c, double pull, frame_hessian *h) {
+    memset(h, 0, sizeof *h);
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) h->along[i][j] = c->curvature * f->weights[i] * f->weights[j];
     }
-    for (int j = 0; j < 2; j++) {
-        memset(y, 0, sizeof y);
-        add_outer(f->weights, f->tangents[j], 1.0, y);
-        add_square(hessian, -pull, y);
+    for (int s = 0; s < f->slide_count; s++) {
+        double step[4];
+        for (int i = 0; i < 4; i++) step[i] = f->distance * f->slides[s][i];
+        for (int i = 0; i < 4; i++) {
+            h->mixed[i][s] = pull * step[i];
+            for (int j = 0; j < 4; j++) h->along[i][j] += pull * step[i] * step[j];
+        }
+    }
+    for (int s = f->slide_count; s < 2; s++) h->across[s][s] = -pull;
+}
+
+/* Subtracts value * y y^T with y = p (x) n + w (x) (t's times r). */
+static void take_off_square(frame_hessian *h, double value, const double p[4], const double r[2]) {
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) h->along[i][j] -= value * p[i] * p[j];
+        for (int a = 0; a < 2; a++) h->mixed[i][a] -= value * p[i] * r[a];
+    }
+    for (int a = 0; a < 2; a++) {
+        for (int b = 0; b < 2; b++) h->across[a][b] -= value * r[a] * r[b];
     }
 }
 
-/* ---- its projection -------------------------------------------------------------------------------------- */
+static void copy_lower_triangle(double (*hessian)[12]) {
+    for (int i = 0; i < 12; i++) {
+        for (int j = 0; j < i; j++) hessian[j][i] = hessian[i][j];
+    }
+}
 
-/* Orthonormal vectors of weights: the first along the pair's weights, and one more for each slide. */
-typedef struct weight_basis {
-    double q[3][4];
-    int count;
-    double length; /* of the weights */
-} weight_basis;
-
-static weight_basis make_basis(const pair_frame *f) {
-    weight_basis b = {.count = 1, .length = sqrt(dot_of_four(f->weights, f->weights))};
-    for (int i = 0; i < 4; i++) b.q[0][i] = f->weights[i] / b.length;
-    for (int j = 0; j < f->slide_count; j++) {
-        double *q = b.q[b.count];
-        memcpy(q, f->slides[j], sizeof b.q[0]);
-        for (int again = 0; again < 2; again++) {
-            for (int l = 0; l < b.count; l++) {
-                double along = dot_of_four(q, b.q[l]);
-                for (int i = 0; i < 4; i++) q[i] -= along * b.q[l][i];
+/* Writes all twelve rows. */
+static void expand_hessian(const pair_frame *f, const frame_hessian *h, double (*hessian)[12]) {
+    const double *n = f->normal, *w = f->weights;
+    double mixed[4][3], across[3][3];
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 4; i++)
+            mixed[i][k] = h->mixed[i][0] * f->tangents[0][k] + h->mixed[i][1] * f->tangents[1][k];
+        double first = h->across[0][0] * f->tangents[0][k] + h->across[1][0] * f->tangents[1][k];
+        double second = h->across[0][1] * f->tangents[0][k] + h->across[1][1] * f->tangents[1][k];
+        for (int l = 0; l < 3; l++) across[k][l] = first * f->tangents[0][l] + second * f->tangents[1][l];
+    }
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j <= i; j++) {
+            double right[3], both = w[i] * w[j];
+            for (int l = 0; l < 3; l++) right[l] = h->along[i][j] * n[l] + w[j] * mixed[i][l];
+            for (int k = 0; k < 3; k++) {
+                double left = w[i] * mixed[j][k];
+                for (int l = 0; l < 3; l++)
+                    hessian[3 * i + k][3 * j + l] = n[k] * right[l] + left * n[l] + both * across[k][l];
             }
         }
-        double length = sqrt(dot_of_four(q, q));
-        if (length == 0.0) continue;
-        for (int i = 0; i < 4; i++) q[i] /= length;
-        b.count++;
     }
-    return b;
+    copy_lower_triangle(hessian);
 }
 
-/* Writes the Hessian in the basis q (x) n of all q, then q[0] (x) t of the slides' tangents. Across these it is not
- * positive. */
-static void write_in_basis(const pair_frame *f, const energy_curve *c, const weight_basis *b,
-                           symmetric_matrix *m) {
-    double pull = pull_of(f, c);
-    m->size = b->count + f->slide_count;
-    for (int i = 0; i < m->size; i++) {
-        for (int j = 0; j < m->size; j++) m->m[i][j] = 0.0;
+/* ---- their projection ------------------------------------------------------------------------------------ */
+
+/* Turns the slides so that they are orthogonal to each other, and gives their lengths times d. A slide of no length goes away. */
+static void turn_slides(const pair_frame *f, double slides[2][4], double turned[2][2], double lengths[2],
+                        int *count) {
+    double c = 1.0, s = 0.0;
+    if (f->slide_count == 2) {
+        double aa = dot_of_four(f->slides[0], f->slides[0]), bb = dot_of_four(f->slides[1], f->slides[1]);
+        double ab = dot_of_four(f->slides[0], f->slides[1]), difference = bb - aa;
+        double root = fabs(difference) + sqrt(difference * difference + 4.0 * ab * ab);
+        double tangent = ab == 0.0 ? 0.0 : (difference < 0.0 ? -2.0 : 2.0) * ab / root;
+        c = 1.0 / sqrt(1.0 + tangent * tangent);
+        s = tangent * c;
     }
-    m->m[0][0] = c->curvature * b->length * b->length;
-    for (int s = 0; s < f->slide_count; s++) {
-        double along[3];
-        for (int l = 0; l < b->count; l++) along[l] = f->distance * dot_of_four(f->slides[s], b->q[l]);
-        for (int l = 0; l < b->count; l++) {
-            m->m[l][b->count + s] = m->m[b->count + s][l] = pull * b->length * along[l];
-            for (int k = 0; k < b->count; k++) m->m[l][k] += pull * along[l] * along[k];
+    const double turns[2][2] = {{c, -s}, {s, c}};
+    *count = 0;
+    for (int j = 0; j < f->slide_count; j++) {
+        double *slide = slides[*count];
+        for (int i = 0; i < 4; i++) slide[i] = f->slides[0][i] * turns[j][0];
+        for (int i = 0; i < 4 && f->slide_count == 2; i++) slide[i] += f->slides[1][i] * turns[j][1];
+        double length = sqrt(dot_of_four(slide, slide));
+        if (!(length > 0.0)) continue;
+        for (int i = 0; i < 4; i++) slide[i] /= length;
+        memcpy(turned[*count], turns[j], sizeof turns[j]);
+        lengths[(*count)++] = f->distance * length;
+    }
+}
+
+/* Takes the negative eigenvalues off. With orthogonal slides u of the lengths s, the Hessian is pull * ((s^2, |w| s), (|w| s, 0)) in
+ * the plane of u (x) n and w (x) t / |w|, for each slide, plus the square E'' (w (x) n)(...)^T: diagonal in the eigenvectors of these
+ * planes, and one square. The tangents along which nothing slides are negative alone, and have been left out. */
+static void project_frame_hessian(const pair_frame *f, const energy_curve *c, double pull, frame_hessian *h) {
+    double slides[2][4], turned[2][2], lengths[2], cosines[2], sines[2], whole[4];
+    double size = sqrt(dot_of_four(f->weights, f->weights));
+    int count;
+    turn_slides(f, slides, turned, lengths, &count);
+    diagonal_and_square m = {.size = 2 * count + 1, .factor = max_of(c->curvature, 0.0) * size * size};
+    for (int i = 0; i < 4; i++) whole[i] = f->weights[i] / size;
+    double rest[4];
+    memcpy(rest, whole, sizeof rest);
+    for (int j = 0; j < count; j++) {
+        double part = dot_of_four(whole, slides[j]);
+        double ratio = 2.0 * size / (lengths[j] + sqrt(lengths[j] * lengths[j] + 4.0 * size * size));
+        cosines[j] = 1.0 / sqrt(1.0 + ratio * ratio);
+        sines[j] = ratio * cosines[j];
+        for (int i = 0; i < 4; i++) rest[i] -= part * slides[j][i];
+        m.diagonal[2 * j] = -pull * lengths[j] * size * ratio;
+        m.vector[2 * j] = -part * sines[j];
+        m.diagonal[2 * j + 1] = pull * lengths[j] * size / ratio;
+        m.vector[2 * j + 1] = part * cosines[j];
+    }
+    double left = sqrt(dot_of_four(rest, rest));
+    m.diagonal[2 * count] = 0.0;
+    m.vector[2 * count] = left;
+    double values[2], vectors[2][SQUARE_MAX];
+    int negative = diagonal_and_square_negative(&m, values, vectors);
+    for (int e = 0; e < negative; e++) {
+        double p[4], r[2] = {0.0, 0.0};
+        for (int i = 0; i < 4; i++) p[i] = left > 0.0 ? vectors[e][2 * count] * rest[i] / left : 0.0;
+        for (int j = 0; j < count; j++) {
+            double low = vectors[e][2 * j], high = vectors[e][2 * j + 1];
+            for (int i = 0; i < 4; i++) p[i] += (high * cosines[j] - low * sines[j]) * slides[j][i];
+            for (int a = 0; a < 2; a++) r[a] += (high * sines[j] + low * cosines[j]) * turned[j][a] / size;
         }
+        take_off_square(h, values[e], p, r);
     }
 }
 
-static void add_projected_hessian(const pair_frame *f, const energy_curve *c, double (*hessian)[12]) {
-    if (f->slide_count == 0 || pull_of(f, c) == 0.0) {
-        double y[12] = {0.0};
-        add_outer(f->weights, f->normal, 1.0, y);
-        if (c->curvature > 0.0) add_square(hessian, c->curvature, y);
-        return;
+static void write_hessian(const pair_frame *f, const energy_curve *c, bool project, double (*hessian)[12]) {
+    frame_hessian h;
+    double pull = pull_of(f, c);
+    set_frame_hessian(f, c, pull, &h);
+    if (project) {
+        for (int s = f->slide_count; s < 2; s++) h.across[s][s] = 0.0;
+        if (f->slide_count > 0 && pull > 0.0) project_frame_hessian(f, c, pull, &h);
     }
-    weight_basis b = make_basis(f);
-    symmetric_matrix m;
-    double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX];
-    write_in_basis(f, c, &b, &m);
-    symmetric_diagonalize(&m, vectors);
-    for (int e = 0; e < m.size; e++) {
-        if (!(m.m[e][e] > 0.0)) continue;
-        double y[12] = {0.0};
-        for (int l = 0; l < b.count; l++) add_outer(b.q[l], f->normal, vectors[l][e], y);
-        for (int s = 0; s < f->slide_count; s++)
-            add_outer(b.q[0], f->tangents[s], vectors[b.count + s][e], y);
-        add_square(hessian, m.m[e][e], y);
-    }
+    expand_hessian(f, &h, hessian);
 }
 
 /* ---- nearly parallel edges ----------------------------------------------------------------------------- */
@@ -224,7 +264,9 @@ static void project_nine(double (*hessian)[12]) {
         for (int i = 0; i < 9; i++) {
             for (int l = 0; l < 4; l++) y[3 * l + i % 3] += vectors[i][e] * edge_basis[i / 3][l];
         }
-        add_square(hessian, m.m[e][e], y);
+        for (int i = 0; i < 12; i++) {
+            for (int j = 0; j <= i; j++) hessian[i][j] += m.m[e][e] * y[i] * y[j];
+        }
     }
     copy_lower_triangle(hessian);
 }
@@ -257,7 +299,7 @@ static void mollify_term(const edge_mollifier *m, const energy_curve *c, const p
 static energy_curve curve_of_item(const cscd_energy_options *options, const cscd_proximity *item,
                                   const pair_frame *f) {
     energy_curve c = energy_law_at(options, f->distance, energy_separation_of(item));
-    double factor = options->stiffness * energy_weight_of(item);
+    double factor = options->stiffness * energy_weight_of(options, item);
     if (c.value == INFINITY || factor == 0.0) return (energy_curve){factor > 0.0 ? INFINITY : 0.0, 0.0, 0.0};
     return (energy_curve){factor * c.value, factor * c.slope, factor * c.curvature};
 }
@@ -279,13 +321,7 @@ void energy_pair_evaluate(const cscd_energy_options *options, const cscd_proximi
     if (c.value == 0.0 || c.value == INFINITY) return;
     bool mollified = mollifier_find(item, x, &m);
     if (term->gradient != NULL) add_outer(f.weights, f.normal, c.slope, term->gradient[0]);
-    if (term->hessian != NULL) {
-        if (term->project && !mollified)
-            add_projected_hessian(&f, &c, term->hessian);
-        else
-            add_plain_hessian(&f, &c, term->hessian);
-        copy_lower_triangle(term->hessian);
-    }
+    if (term->hessian != NULL) write_hessian(&f, &c, term->project && !mollified, term->hessian);
     if (mollified) mollify_term(&m, &c, &f, term);
 }
 

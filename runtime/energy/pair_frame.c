@@ -16,25 +16,20 @@ static void add_slide(pair_frame *f, int from, int to, double sign) {
     slide[to] = sign;
 }
 
-static bool is_inside(double u) {
-    return u != 0.0 && u != 1.0;
-}
-
-/* The nearest point lies on the corners that weigh more than 0, as in the form CSCD_NEAR_UNIQUE. */
-static void slide_on_face(double u, double v, pair_frame *f) {
-    int on[3], count = 0;
-    if (u + v < 1.0) on[count++] = 1;
-    if (u > 0.0) on[count++] = 2;
-    if (v > 0.0) on[count++] = 3;
-    for (int i = 1; i < count; i++) add_slide(f, on[0], on[i], -1.0);
-}
-
+/* A nearest point slides along what its vertices with weights span; on the border of a feature some weigh exactly 0. */
 static void name_slides(const cscd_proximity *item, pair_frame *f) {
+    const double *w = item->weights;
+    int on[3], count = 0;
     f->slide_count = 0;
-    if (item->kind == CSCD_CONTACT_VF) slide_on_face(item->u, item->v, f);
+    if (item->kind == CSCD_CONTACT_VF) {
+        for (int i = 1; i < 4; i++) {
+            if (w[i] < 0.0) on[count++] = i;
+        }
+        for (int i = 1; i < count; i++) add_slide(f, on[0], on[i], -1.0);
+    }
     bool edge_a = item->kind == CSCD_CONTACT_EE || item->kind == CSCD_CONTACT_EV;
-    if (edge_a && is_inside(item->u)) add_slide(f, 0, 1, 1.0);
-    if (item->kind == CSCD_CONTACT_EE && is_inside(item->v)) add_slide(f, 2, 3, -1.0);
+    if (edge_a && w[0] > 0.0 && w[1] > 0.0) add_slide(f, 0, 1, 1.0);
+    if (item->kind == CSCD_CONTACT_EE && w[2] < 0.0 && w[3] < 0.0) add_slide(f, 2, 3, -1.0);
 }
 
 /* The sum of amounts[i] * x[i], where the amounts add up to 0: of differences, which are small where the points are
@@ -70,15 +65,17 @@ static void straighten_slides(const double *points[4], pair_frame *f) {
             take_off(along, f->tangents[0], slide, f->slides[0]);
         double length = sqrt(vec3_dot(along, along));
         if (length == 0.0 || length <= least_sine * whole) continue;
-        for (int k = 0; k < 3; k++) f->tangents[count][k] = along[k] / length;
-        for (int i = 0; i < 4; i++) f->slides[count][i] = slide[i] / length;
+        double inverse = 1.0 / length;
+        for (int k = 0; k < 3; k++) f->tangents[count][k] = along[k] * inverse;
+        for (int i = 0; i < 4; i++) f->slides[count][i] = slide[i] * inverse;
         count++;
     }
     f->slide_count = count;
 }
 
 static void normalize_vector(double v[3], double length) {
-    for (int k = 0; k < 3; k++) v[k] /= length;
+    double inverse = 1.0 / length;
+    for (int k = 0; k < 3; k++) v[k] *= inverse;
 }
 
 /* A unit vector across a unit vector. */
@@ -126,7 +123,7 @@ void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f)
     double apart[3];
     for (int i = 0; i < 4; i++) points[i] = x + (size_t)item->vertices[i] * 3;
     f->straight = false;
-    cscd_stencil_weights(item->kind, item->u, item->v, f->weights);
+    memcpy(f->weights, item->weights, sizeof f->weights);
     name_slides(item, f);
     if (item->kind == CSCD_CONTACT_VH) {
         frame_of_half_space(item, points, f);

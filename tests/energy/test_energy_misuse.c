@@ -38,8 +38,8 @@ static void make_right(wrong_call *w) {
     w->context = context_of(1, NULL);
     expect_ok(cscd_mesh_create(w->context, &points, 1, &w->mesh));
     expect_ok(cscd_energy_create(w->context, w->mesh, &w->energy));
-    w->item =
-        (cscd_proximity){.kind = CSCD_CONTACT_VF, .count = 1, .vertices = {0, 1, 2, 3}, .u = 0.25, .v = 0.25};
+    w->item = (cscd_proximity){.kind = CSCD_CONTACT_VF, .count = 1, .vertices = {0, 1, 2, 3}};
+    cscd_stencil_weights(CSCD_CONTACT_VF, 0.25, 0.25, w->item.weights);
     w->items = (cscd_proximities){&w->item, 1};
     memcpy(w->x, x, sizeof x);
     w->options = cscd_energy_defaults();
@@ -104,8 +104,10 @@ TEST(items_are_checked) {
     REFUSED("a vertex that the mesh does not have", w.item.vertices[3] = 4);
     REFUSED("without an energy", w.item.kind = CSCD_CONTACT_TT);
     REFUSED("without an energy", w.item.kind = 6);
-    REFUSED("u or v outside", w.item.u = 1.5);
-    REFUSED("u or v outside", w.item.v = (double)NAN);
+    REFUSED("weights", w.item.weights[1] = -1.5);
+    REFUSED("weights", w.item.weights[0] = (double)NAN);
+    REFUSED("weights", w.item.weights[2] = -0.5);
+    REFUSED("weights", w.item.kind = CSCD_CONTACT_EE);
     REFUSED("threshold", w.item.threshold = -1.0);
 }
 

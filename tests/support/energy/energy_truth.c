@@ -56,7 +56,7 @@ static wide line_line(const wide *x) {
     return along_normal(from, s, t);
 }
 
-static wide face_distance(const cscd_proximity *p, const wide *x) {
+static wide face_distance(const energy_case *p, const wide *x) {
     int on[3], count = 0;
     if (p->u + p->v < 1.0) on[count++] = 1;
     if (p->u > 0.0) on[count++] = 2;
@@ -66,19 +66,20 @@ static wide face_distance(const cscd_proximity *p, const wide *x) {
     return point_plane(x);
 }
 
-static wide edge_distance(const cscd_proximity *p, const wide *x) {
+static wide edge_distance(const energy_case *p, const wide *x) {
     bool end_a = p->u == 0.0 || p->u == 1.0, end_b = p->v == 0.0 || p->v == 1.0;
     const wide *a = x + (p->u == 1.0 ? 3 : 0), *b = x + (p->v == 1.0 ? 9 : 6);
-    if (p->kind == CSCD_CONTACT_EV) return end_a ? point_point(a, x + 6) : point_line(x + 6, x, x + 3);
+    if (p->item.kind == CSCD_CONTACT_EV) return end_a ? point_point(a, x + 6) : point_line(x + 6, x, x + 3);
     if (end_a && end_b) return point_point(a, b);
     if (end_a) return point_line(a, x + 6, x + 9);
     return end_b ? point_line(b, x, x + 3) : line_line(x);
 }
 
-static wide distance_of(const cscd_proximity *p, const wide *x) {
-    if (p->kind == CSCD_CONTACT_VF) return face_distance(p, x);
+static wide distance_of(const energy_case *c, const wide *x) {
+    const cscd_proximity *p = &c->item;
+    if (p->kind == CSCD_CONTACT_VF) return face_distance(c, x);
     if (p->kind == CSCD_CONTACT_VV) return point_point(x, x + 3);
-    if (p->kind != CSCD_CONTACT_VH) return edge_distance(p, x);
+    if (p->kind != CSCD_CONTACT_VH) return edge_distance(c, x);
     wide apart[3], normal[3] = {p->normal[0], p->normal[1], p->normal[2]};
     wide_difference(x, x + 3, apart);
     return wide_dot(apart, normal);
@@ -111,8 +112,7 @@ static wide mollifier_at(const cscd_proximity *p, const wide *x) {
 
 long double energy_truth(const energy_case *c, const long double x[12]) {
     wide factor = (wide)c->options.stiffness * CASE_WEIGHT(c);
-    return factor * mollifier_at(&c->item, x) *
-           law_of(&c->options, distance_of(&c->item, x), CASE_SEPARATION(c));
+    return factor * mollifier_at(&c->item, x) * law_of(&c->options, distance_of(c, x), CASE_SEPARATION(c));
 }
 
 /* ---- derivatives ----------------------------------------------------------------------------------------- */
@@ -197,7 +197,7 @@ static double random_side(random_stream *random) {
 }
 
 /* The border of a feature at which the nearest point is. */
-static void set_border(random_stream *random, pair_shape shape, cscd_proximity *p) {
+static void set_border(random_stream *random, pair_shape shape, energy_case *p) {
     uint32_t which = stream_below(random, 4);
     double inner = stream_between(random, 0.2, 0.8);
     static const double corners[3][2] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
@@ -225,8 +225,7 @@ static cscd_contact_kind kind_of_shape(pair_shape shape) {
 /* Moves the first feature so that its nearest point lies `distance` along a normal from that of the second one; on the border of
  * a feature the lines to the point need not be across it. */
 static void place_first(energy_case *c, double distance, const double normal[3]) {
-    double weights[4];
-    cscd_stencil_weights(c->item.kind, c->item.u, c->item.v, weights);
+    const double *weights = c->item.weights;
     for (int k = 0; k < 3; k++) {
         double apart = 0.0;
         for (int i = 0; i < 4; i++) apart += weights[i] * c->x[3 * i + k];
@@ -242,13 +241,13 @@ static void normal_of_case(const energy_case *c, random_stream *random, double o
     for (int k = 0; k < 3; k++) out[k] = random_side(random);
     int from[2] = {0, 2}, to[2] = {1, 3};
     bool used[2] = {p->kind == CSCD_CONTACT_EE || p->kind == CSCD_CONTACT_EV, p->kind == CSCD_CONTACT_EE};
-    used[0] = used[0] && p->u != 0.0 && p->u != 1.0;
-    used[1] = used[1] && p->v != 0.0 && p->v != 1.0;
+    used[0] = used[0] && c->u != 0.0 && c->u != 1.0;
+    used[1] = used[1] && c->v != 0.0 && c->v != 1.0;
     if (p->kind == CSCD_CONTACT_VF) {
         int on[3], count = 0;
-        if (p->u + p->v < 1.0) on[count++] = 1;
-        if (p->u > 0.0) on[count++] = 2;
-        if (p->v > 0.0) on[count++] = 3;
+        if (c->u + c->v < 1.0) on[count++] = 1;
+        if (c->u > 0.0) on[count++] = 2;
+        if (c->v > 0.0) on[count++] = 3;
         used[0] = count > 1, used[1] = count > 2;
         for (int i = 1; i < count; i++) from[i - 1] = on[0], to[i - 1] = on[i];
     }
@@ -277,7 +276,8 @@ energy_case energy_case_make(random_stream *random, pair_shape shape, double dis
     c.item.count = 1 + stream_below(random, 5);
     for (uint32_t i = 0; i < 4; i++) c.item.vertices[i] = i;
     for (int i = 0; i < 12; i++) c.x[i] = random_side(random);
-    set_border(random, shape, &c.item);
+    set_border(random, shape, &c);
+    cscd_stencil_weights(c.item.kind, c.u, c.v, c.item.weights);
     double normal[3];
     normal_of_case(&c, random, normal);
     place_first(&c, distance, normal);

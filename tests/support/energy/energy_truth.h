@@ -24,6 +24,7 @@ typedef enum pair_shape {
 /* One item, and the positions of its vertices. */
 typedef struct energy_case {
     cscd_proximity item;
+    double u, v; /* of its nearest points, as in cscd_contact */
     double x[12];
     cscd_energy_options options;
 } energy_case;
