@@ -53,6 +53,8 @@ class Energy:
     stiffness : float
     physical : bool
         The law is made a length, so that with areas as weights the stiffness is a pressure.
+    by_count : bool
+        A pair weighs its ``count``, whatever weight it has.
     friction : float or (objects,)
         A coefficient for all pairs, or one for each object, of which a pair has the geometric mean.
     slip : float
@@ -69,7 +71,7 @@ class Energy:
     """
 
     def __init__(self, mesh: Mesh, reach: float, law: str = "barrier", *, stiffness: float = 1.0,
-                 physical: bool = False, friction: Any = 0.0, slip: float = 0.0, threads: int = 1,
+                 physical: bool = False, by_count: bool = False, friction: Any = 0.0, slip: float = 0.0, threads: int = 1,
                  simd: str = "auto") -> None:
         if law not in _LAWS:
             raise ValueError(f"law: expected one of {', '.join(_LAWS)}; got {law!r}")
@@ -77,7 +79,7 @@ class Energy:
         self._options = new_struct("energy_options")
         library.cscd_energy_defaults_sized(address_of(self._options), self._options.nbytes)
         self._options["law"] = VALUES[f"CSCD_ENERGY_{law.upper()}"]
-        self._options["physical"] = bool(physical)
+        self._options["physical"], self._options["by_count"] = bool(physical), bool(by_count)
         for name, value in (("reach", reach), ("stiffness", stiffness), ("slip", slip)):
             self._options[name] = number_of(name, value)
         self._friction = self._set_friction(friction)

@@ -47,6 +47,7 @@ class Solver:
     def __init__(self, scene: cscd.Scene, x: Array, springs: Array) -> None:
         self.detector = cscd.Detector(scene, min_separation=1e-3 * REACH, threads=0)
         self.detector.set_rest(x)
+        self.barrier = cscd.Energy(scene, REACH, stiffness=STIFFNESS, by_count=True)
         self.x, self.v = x, np.zeros_like(x)
         self.free = len(x) - 8  # the box rests
         self.springs = springs
@@ -56,11 +57,9 @@ class Solver:
     def energy(self, x: Array, near: cscd.Proximities) -> float:
         """The energy at positions, of which the near pairs are given."""
         stretch = self.lengths_at(x)[1] - self.lengths
-        d, faded = near.distance, fade(x, near)[0]
-        barrier = -((d - REACH) ** 2) * np.log(d / REACH) * near.count * faded
         away = (x - self.aim)[: self.free]
         return float(0.5 * MASS / STEP ** 2 * (away * away).sum() + 0.5 * (self.stiffness * stretch * stretch).sum()
-                     + STIFFNESS * barrier.sum())
+                     + self.barrier.evaluate(x, near, gradient=False).value)
 
     def lengths_at(self, x: Array) -> Tuple[Array, Array]:
         """Directions (s, 3) and lengths (s,) of the springs."""
@@ -78,30 +77,20 @@ class Solver:
         across = np.maximum(0.0, 1.0 - self.lengths / length)[:, None, None]
         blocks = self.stiffness[:, None, None] * (outer + across * (np.eye(3) - outer))
 
-        d, gap, l = near.distance, near.distance - REACH, np.log(near.distance / REACH)
-        scale = STIFFNESS * near.count
-        faded, of_fading = fade(x, near)
-        slope = scale * faded * (-2.0 * gap * l - gap * gap / d)
-        curvature = scale * faded * (-2.0 * l - 4.0 * gap / d + (gap / d) ** 2)
-        corners, weights, normal = near.vertices, near.weights, near.normal
-        np.add.at(gradient, corners, (slope[:, None] * weights)[:, :, None] * normal[:, None, :]
-                  + (-scale * gap * gap * l)[:, None, None] * of_fading)
-        return gradient, self.hessian(len(x), blocks, corners, weights, curvature[:, None, None] * normal[:, :, None]
-                                      * normal[:, None, :])
+        barrier = self.barrier.evaluate(x, near, hessian="coo")
+        data, (rows, columns) = barrier.hessian
+        hessian = self.hessian(len(x), blocks)
+        np.add.at(hessian.reshape(3 * len(x), 3 * len(x)), (rows, columns), data)
+        return gradient + barrier.gradient, hessian
 
-    def hessian(self, count: int, springs: Array, corners: Array, weights: Array, barriers: Array) -> Array:
-        """Adds blocks of 3 x 3 for each two ends of a spring, and each two vertices of a near pair."""
-        rows, columns, blocks = [np.arange(count)], [np.arange(count)], [np.tile(MASS / STEP ** 2 * np.eye(3), (count, 1, 1))]
-        for ends, shares, part in ((self.springs, np.tile([-1.0, 1.0], (len(self.springs), 1)), springs),
-                                   (corners, weights, barriers)):
-            for a in range(ends.shape[1]):
-                for b in range(ends.shape[1]):
-                    rows.append(ends[:, a])
-                    columns.append(ends[:, b])
-                    blocks.append((shares[:, a] * shares[:, b])[:, None, None] * part)
-        place = (np.concatenate(rows) * 9 * count + np.concatenate(columns) * 3)[:, None, None] \
-            + np.arange(3)[:, None] * 3 * count + np.arange(3)
-        return np.bincount(place.ravel(), np.concatenate(blocks).ravel(), 9 * count * count).reshape(count, 3, count, 3)
+    def hessian(self, count: int, springs: Array) -> Array:
+        """The masses, and a block of 3 x 3 for each two ends of a spring."""
+        hessian = np.zeros((count, 3, count, 3))
+        vertices, (a, b) = np.arange(count), self.springs.T
+        hessian[vertices, :, vertices, :] = MASS / STEP ** 2 * np.eye(3)
+        for rows, columns, sign in ((a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)):
+            np.add.at(hessian, (rows, slice(None), columns, slice(None)), sign * springs)
+        return hessian
 
     def advance(self) -> None:
         """One step of time: Newton's method, every step of which is certified."""
@@ -131,20 +120,6 @@ class Solver:
                 self.x = x
                 return near
             longest = 0.5 * fraction
-
-
-def fade(x: Array, near: cscd.Proximities) -> Tuple[Array, Array]:
-    """The factor of nearly parallel edges (k,), and its gradient (k, 4, 3) (Li et al. 2020, eq. 24)."""
-    p = x[near.vertices]
-    a, b = p[:, 1] - p[:, 0], p[:, 3] - p[:, 2]
-    normal = np.cross(a, b)
-    area = (normal * normal).sum(axis=1)
-    fading = area < near.threshold
-    threshold = np.where(fading, near.threshold, 1.0)
-    share = np.where(fading, area / threshold, 1.0)
-    factor = (2.0 - 2.0 * share) * 2.0 / threshold
-    of_a, of_b = factor[:, None] * np.cross(b, normal), factor[:, None] * np.cross(normal, a)
-    return share * (2.0 - share), np.stack([-of_a, of_a, -of_b, of_b], axis=1)
 
 
 def draw(path: str, scene: cscd.Scene, frames: List[Array]) -> None:

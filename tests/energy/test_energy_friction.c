@@ -143,6 +143,26 @@ TEST(coefficients_are_of_objects_or_items) {
     free_rig(&r);
 }
 
+/* Edges that fade have as little friction as they have normal force. */
+TEST(friction_of_parallel_edges_fades) {
+    friction_rig r = make_rig();
+    random_stream random = stream_start(5);
+    energy_case c = make_case(&random, SHAPE_EE);
+    double x1[12], gradient[12], across[3], square = 0.0, a[3], b[3];
+    for (int k = 0; k < 12; k++) x1[k] = c.x[k] + (k < 6 ? 0.3 : 0.0);
+    freeze_case(&r, &c);
+    double whole = rub_points(&r, c.x, x1, gradient, NULL).value;
+    for (int k = 0; k < 3; k++) a[k] = c.x[3 + k] - c.x[k], b[k] = c.x[9 + k] - c.x[6 + k];
+    for (int k = 0; k < 3; k++) {
+        across[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        square += across[k] * across[k];
+    }
+    c.item.threshold = 4.0 * square; /* the mollifier is 1/4 (2 - 1/4) */
+    freeze_case(&r, &c);
+    assert_true(fabs(rub_points(&r, c.x, x1, gradient, NULL).value - 0.4375 * whole) < 1e-12 * whole);
+    free_rig(&r);
+}
+
 /* What is frozen stays until the next time; an empty list frees all. */
 TEST(friction_stays_frozen) {
     friction_rig r = make_rig();
