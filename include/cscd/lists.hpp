@@ -10,6 +10,11 @@
 #include <algorithm>
 #include <vector>
 
+/* UNIQUE and BEYOND together. */
+inline constexpr cscd_near_form operator|(cscd_near_form a, cscd_near_form b) noexcept {
+    return static_cast<cscd_near_form>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+
 namespace cscd {
 
 /* A list of the library with its items as a range. It belongs to the detector, and lives until the next call of

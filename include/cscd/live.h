@@ -194,7 +194,7 @@ CSCD_API cscd_status cscd_detector_set_active(cscd_detector *detector, const uin
  *            then. A pair of obstacles of which one becomes free counts as uncovered
  *   rules    each object keeps its rule; a new one gets cscd_object_rule_default
  *   parts    each triangle keeps the label of its origin; a new one is in no part
- *   rest     edges keep the lengths of their origins; others have a threshold of 0 until
+ *   rest     edges keep the lengths of their origins, and triangles the areas; others have none until
  *            cscd_detector_set_rest
  * Lists, timings, counters, guarantees and orientations are gone. Line searches return INVALID_ARGUMENT until
  * they begin again. */

@@ -64,27 +64,51 @@ typedef struct cscd_proximity {
     uint32_t count;       /* the number of pairs of features */
     uint32_t vf_count;    /* those of a vertex and a face */
     uint32_t ee_count;    /* those of two edges; the others are of points with points or wires, or VH */
-    uint32_t vertices[4]; /* and weights: see cscd_stencil */
+    uint32_t vertices[4]; /* and weights: see cscd_stencil. Exactly 0 or 1 on the border of a feature */
     double distance;      /* between the nearest points; VH: the height above the plane, below 0 behind it */
-    /* In [0,1], as in cscd_contact; EV: u names the point on the edge. Exactly 0 or 1 on the border of a
-     * feature. */
-    double u, v;
     double weights[4];
-    double point[3];  /* the middle between the nearest points */
-    double normal[3]; /* unit vector from b's nearest point to a's; if they touch, across both, or 0 */
-    double threshold; /* EE, after cscd_detector_set_rest: that of the mollifier (cscd_near_form); else 0 */
+    double normal[3];  /* unit vector from b's nearest point to a's; if they touch, across both, or 0 */
+    double threshold;  /* EE, after cscd_detector_set_rest: that of the mollifier (cscd_near_form); else 0 */
+    double weight;     /* of its energy: `count`, or after cscd_detector_set_rest an area (see there) */
+    double separation; /* the distance that the pair has to keep: min_separation, or that of the rules */
 } cscd_proximity;
 
-/* The form of a list of proximities.
+/* Returns u and v of these weights, exactly, in [0,1] as in cscd_contact; EV: u names the point on the edge.
+ * It undoes cscd_stencil_weights. */
+static inline void cscd_stencil_parameters(cscd_contact_kind kind, const double weights[4], double *u,
+                                           double *v) {
+    const bool vf = kind == CSCD_CONTACT_VF, ee = kind == CSCD_CONTACT_EE;
+    *u = vf ? -weights[2] : ee || kind == CSCD_CONTACT_EV ? weights[1] : 0.0;
+    *v = vf || ee ? -weights[3] : 0.0;
+}
+
+/* Writes the middle between the nearest points. positions: x, y, z of all vertices, those of the list. */
+static inline void cscd_proximity_point(const cscd_proximity *item, const double *positions,
+                                        double point[3]) {
+    for (size_t axis = 0; axis < 3; axis++) {
+        point[axis] = -0.5 * item->distance * item->normal[axis];
+        for (size_t i = 0; i < 4; i++) {
+            if (item->weights[i] > 0.0)
+                point[axis] += item->weights[i] * positions[3 * (size_t)item->vertices[i] + axis];
+        }
+    }
+}
+
+/* The form of a list of proximities, and BEYOND, which may be added to it by `|`.
  *
  * UNIQUE lists pairs with the same nearest points once, as VV or EV: the sum of count * energy(distance) is
  * that over all pairs, up to rounding. After cscd_detector_set_rest, two edges with c = |e_a x e_b|^2 below
  * threshold = 1e-3 |e_a|^2 |e_b|^2 (at rest) stay an item EE. There c / threshold * (2 - c / threshold) is
  * the mollifier of the energy (Li et al. 2020, eq. 24), and for all others 1. docs/solver/line-search.md says
- * why, and has a sum. */
+ * why, and has a sum.
+ *
+ * BEYOND lists the pairs that are at most so much farther apart than they have to keep: the distance that is
+ * asked for counts from `separation`, so that an energy of distance - separation has all its pairs, whatever
+ * the thickness of their objects (Codimensional IPC, Li et al. 2021). */
 typedef enum cscd_near_form {
     CSCD_NEAR_PAIRS,  /* every pair of features, also those of points and half-spaces; counts are 1 */
     CSCD_NEAR_UNIQUE, /* no two items with the same nearest features: VF, EE, VV, EV and VH */
+    CSCD_NEAR_BEYOND, /* the distance counts beyond what each pair has to keep */
     CSCD_NEAR_FORM_MAX_ENUM = 0x7fffffff
 } cscd_near_form;
 
@@ -97,15 +121,20 @@ typedef struct cscd_proximities {
 
 /* Finds every pair of features that is at most `distance`, a length above 0, apart at `positions`. Listed
  * pairs are at most (1 + 1e-6) times that apart or, where rounding is coarser, 2^-42 of their extent beyond
- * it. Seams and pairs to leave out count; min_separation does not. Items beyond `distance` need not count all
- * of their pairs. Timings, counters and guarantees stay those of the last step. CANCELLED: see cscd_progress.
+ * it. Seams and pairs to leave out count; min_separation does only where `form` has BEYOND. Items beyond
+ * `distance` need not count all of their pairs. Timings, counters and guarantees stay those of the last step. CANCELLED: see cscd_progress.
  */
 CSCD_API cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
                                              double distance, cscd_near_form form, cscd_proximities *out);
 
-/* Sets the thresholds of pairs of edges (cscd_near_form) from the positions at rest, from the next call on.
- * They hold in lists of the detector and of its line searches. NULL forgets them. INVALID_ARGUMENT also where
- * an edge is longer than 2^250, or shorter than 2^-250 but not 0. */
+/* Sets the thresholds of pairs of edges (cscd_near_form) and the weights of all pairs from the positions at
+ * rest, from the next call on. They hold in lists of the detector and of its line searches. NULL forgets
+ * them. INVALID_ARGUMENT also where an edge is longer than 2^250, or shorter than 2^-250 but not 0.
+ *
+ * The weights are the areas of convergent IPC (Li et al. 2023). A vertex, and an edge, has a third of the
+ * areas of its triangles; of a wire an edge has its length, a vertex half of those of its edges; a point has
+ * 1. VF weighs a quarter of its vertex, VH all of it, and others a quarter of both features together. Items
+ * of UNIQUE have the sum over the pairs that they count, in the order of these. */
 CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest);
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
@@ -230,7 +259,8 @@ CSCD_API cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_
 CSCD_API void cscd_line_search_destroy(cscd_line_search *search);
 
 /* Collects the candidates of the motion from x0 to x1 in place of those before. Both positions are copied.
- * reach: the largest distance for cscd_line_search_find_near, or 0. CANCELLED: see cscd_progress. */
+ * reach: the largest distance for cscd_line_search_find_near, with BEYOND or without, or 0. CANCELLED: see
+ * cscd_progress. */
 CSCD_API cscd_status cscd_line_search_begin(cscd_line_search *search, const cscd_view *x0,
                                             const cscd_view *x1, double reach);
 
@@ -293,11 +323,12 @@ CSCD_API cscd_status cscd_pairs_step(cscd_context *context, const cscd_pairs *pa
                                      const cscd_view *x1, double min_separation, double tolerance,
                                      cscd_pair_contact *out);
 
-/* The nearest points of a pair; the members are those of cscd_proximity. */
+/* The nearest points of a pair; distance and normal are those of cscd_proximity, u and v as in cscd_contact. */
 typedef struct cscd_pair_distance {
     double distance; /* INFINITY: farther apart than `distance`, and all other members are 0 */
     double u, v;
-    double point[3], normal[3];
+    double point[3]; /* the middle between the nearest points */
+    double normal[3];
 } cscd_pair_distance;
 
 /* Measures each pair at rest, and writes pair_count results. Pairs count up to `distance`, a length above 0

@@ -4,6 +4,7 @@
 #include "models/shapes/body.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void apart_free(apart *a) {
     free(a->pairs);
@@ -30,11 +31,13 @@ void apart_take(apart *a, const cscd_mesh *mesh, const cscd_proximities *near) {
     for (int last = 0; last < 2; last++) {
         for (size_t i = 0; i < near->count; i++) {
             const cscd_proximity *p = &near->items[i];
-            if (p->kind == CSCD_CONTACT_EE && !(is_inside(p->u) && is_inside(p->v))) continue;
-            apart_pair pair = {.stencil = cscd_mesh_stencil(mesh, p->kind, p->a, p->b, p->u, p->v)};
+            if (p->kind == CSCD_CONTACT_EE && !(is_inside(p->weights[1]) && is_inside(-p->weights[3])))
+                continue;
+            apart_pair pair = {.healing = a->healing[last]};
+            memcpy(pair.stencil.vertices, p->vertices, sizeof p->vertices);
+            memcpy(pair.stencil.weights, p->weights, sizeof p->weights);
             if (is_with_obstacle(mesh, &pair.stencil) != (last == 1)) continue;
             for (int k = 0; k < 3; k++) pair.normal[k] = p->normal[k];
-            pair.healing = a->healing[last];
             a->pairs[a->count++] = pair;
         }
     }

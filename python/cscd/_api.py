@@ -112,6 +112,7 @@ VALUES: Dict[str, int] = {
     "CSCD_MODES": 2,
     "CSCD_MODE_ALL": 0,
     "CSCD_MODE_EARLIEST": 1,
+    "CSCD_NEAR_BEYOND": 2,
     "CSCD_NEAR_PAIRS": 0,
     "CSCD_NEAR_UNIQUE": 1,
     "CSCD_NULL_OBJECT": 8,

@@ -18,13 +18,12 @@ from .line_search import LineSearch
 from .live import LiveSettings
 from .mesh import Mesh
 from .plan import Plan
-from .results import Contacts, Proximities, copy_records
+from .results import Contacts, Proximities, copy_records, near_form
 
 __all__ = ["Detector"]
 
 Array = Any
 
-_NEAR_PAIRS, _NEAR_UNIQUE = 0, 1
 
 
 class Detector(LiveSettings):
@@ -225,7 +224,7 @@ class Detector(LiveSettings):
             self._find(host, views, options)
             return _Surface(self._lists["intersections"], self.mesh.vertex_count, not parts, parts)
 
-    def near(self, x: Any, distance: float, unique: bool = False) -> Proximities:
+    def near(self, x: Any, distance: float, unique: bool = False, beyond: bool = False) -> Proximities:
         """Every pair of features whose distance at positions ``x`` is at most ``distance``, a length above 0.
 
         Parameters
@@ -233,12 +232,15 @@ class Detector(LiveSettings):
         unique : bool
             Pairs with the same nearest vertices, or edge and vertex, are one item with a ``count``, so that the sum of
             ``count * energy(distance)`` is that over all pairs (include/cscd/solver.h).
+        beyond : bool
+            The distance counts beyond what each pair has to keep (``separation``), so that an energy of the difference has all
+            its pairs, whatever the thickness of their objects.
         """
         views, kept = self._views("x", x)
         host = self._host
         with host.lock:
             self._call(host, "proximities", library.cscdpy_detector_find_near, self._detector, address_of(views),
-                       number_of("distance", distance), _NEAR_UNIQUE if unique else _NEAR_PAIRS,
+                       number_of("distance", distance), near_form(unique, beyond),
                        self._at["proximities"])
             found: Proximities = copy_records(self._lists["proximities"], "proximity").view(Proximities)
             return found

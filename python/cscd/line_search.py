@@ -9,7 +9,7 @@ import numpy as np
 from ._arrays import mutable_view, number_of
 from ._host import Handle
 from ._library import address_of, library
-from .results import Contacts, Proximities, copy_records
+from .results import Contacts, Proximities, copy_records, near_form
 
 if TYPE_CHECKING:
     from .detector import Detector
@@ -18,7 +18,6 @@ __all__ = ["LineSearch"]
 
 Array = Any
 
-_NEAR_PAIRS, _NEAR_UNIQUE = 0, 1
 
 
 class LineSearch:
@@ -66,15 +65,14 @@ class LineSearch:
                            number_of("longest", longest), address_of(target), detector._at["free_step"])
             return free_step_of(detector._lists["free_step"], reached)
 
-    def near(self, fraction: float, distance: float, unique: bool = False) -> Proximities:
+    def near(self, fraction: float, distance: float, unique: bool = False, beyond: bool = False) -> Proximities:
         """As ``Detector.near``, at ``positions(fraction)``; ``distance`` is at most the reach of the line."""
         detector = self.detector
         host = self._host
         with host.lock:
             detector._call(host, "proximities", library.cscdpy_line_search_find_near, self._handle.pointer,
                            number_of("fraction", fraction), number_of("distance", distance),
-                           _NEAR_UNIQUE if unique else _NEAR_PAIRS,
-                           detector._at["proximities"])
+                           near_form(unique, beyond), detector._at["proximities"])
             found: Proximities = copy_records(detector._lists["proximities"], "proximity").view(Proximities)
             return found
 

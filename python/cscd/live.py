@@ -34,7 +34,7 @@ class LiveSettings:
         self._inputs.update(min_separation=min_separation, tolerance=tolerance)
 
     def set_rest(self, rest: Any) -> None:
-        """Takes edge lengths at rest (n, 3) for the thresholds of ``near``; None forgets them."""
+        """Takes positions at rest (n, 3) for the thresholds and weights of ``near``; None forgets them."""
         views, kept = (None, None) if rest is None else self._views("rest", rest)
         host = self._host
         with host.lock:

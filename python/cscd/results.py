@@ -82,16 +82,38 @@ class Proximities(Records):
         In the unit of the positions.
     vertices, weights : (k, 4) int64 and float64
         As those of ``Contacts``. The gradient of the distance at ``vertices[:, i]`` is ``weights[:, i] * normal``.
-    u, v : (k,) float64
-    point, normal : (k, 3) float64
-        The middle between the nearest points, and a unit vector from b's to a's.
+    normal : (k, 3) float64
+        A unit vector from b's nearest point to a's.
     threshold : (k,) float64
         Of two edges, after ``set_rest``: below it a barrier's energy fades.
+    weight : (k,) float64
+        Of an item's energy: ``count``, or after ``set_rest`` an area (Li et al. 2023; include/cscd/solver.h).
+    separation : (k,) float64
+        The distance that the pair has to keep, by its rules.
+    u, v : (k,) float64
+        Barycentric coordinates of the nearest points, as those of ``Contacts``; they follow from the weights.
     """
 
     @classmethod
     def record(cls) -> Any:
         return records["proximity"]
+
+    @property
+    def u(self) -> Any:
+        kind, weights = np.asarray(self["kind"]), np.asarray(self["weights"])
+        named = np.where((kind == 1) | (kind == 4), weights[..., 1], 0.0)
+        return np.where(kind == 0, -weights[..., 2], named)
+
+    @property
+    def v(self) -> Any:
+        return np.where(np.asarray(self["kind"]) <= 1, -np.asarray(self["weights"])[..., 3], 0.0)
+
+    def points(self, x: Any) -> Any:
+        """(k, 3) float64: the middles between the nearest points, at the positions ``x`` (n, 3) of the list."""
+        weights, vertices = np.asarray(self["weights"]), np.asarray(self["vertices"])
+        corners = np.asarray(x, dtype=np.float64)[vertices]
+        of_a = (np.where(weights > 0.0, weights, 0.0)[..., None] * corners).sum(axis=-2)
+        return of_a - 0.5 * np.asarray(self["distance"])[..., None] * np.asarray(self["normal"])
 
 
 class PairContacts(Records):
@@ -167,6 +189,12 @@ def _weights(found: Any) -> Any:
                np.where(vf, -u, np.where(a_is_vertex, 0.0, np.where(b_is_vertex, -1.0, v - 1.0))),
                np.where(b_is_vertex, 0.0, -v))
     return np.stack(columns, axis=-1)
+
+
+def near_form(unique: bool, beyond: bool) -> int:
+    """The form of a list of proximities (cscd_near_form)."""
+    form: int = VALUES["CSCD_NEAR_UNIQUE" if unique else "CSCD_NEAR_PAIRS"]
+    return form | VALUES["CSCD_NEAR_BEYOND"] if beyond else form
 
 
 def copy_records(found: Any, name: str) -> Any:

@@ -204,9 +204,9 @@ FIELDS(contact_part_pairs, FIELD(cscd_contact_part_pairs, items), FIELD(cscd_con
 FIELDS(stencil, FIELD(cscd_stencil, vertices), FIELD(cscd_stencil, weights))
 FIELDS(proximity, FIELD(cscd_proximity, kind), FIELD(cscd_proximity, a), FIELD(cscd_proximity, b),
        FIELD(cscd_proximity, count), FIELD(cscd_proximity, vf_count), FIELD(cscd_proximity, ee_count),
-       FIELD(cscd_proximity, vertices), FIELD(cscd_proximity, distance), FIELD(cscd_proximity, u),
-       FIELD(cscd_proximity, v), FIELD(cscd_proximity, weights), FIELD(cscd_proximity, point),
-       FIELD(cscd_proximity, normal), FIELD(cscd_proximity, threshold))
+       FIELD(cscd_proximity, vertices), FIELD(cscd_proximity, distance), FIELD(cscd_proximity, weights),
+       FIELD(cscd_proximity, normal), FIELD(cscd_proximity, threshold), FIELD(cscd_proximity, weight),
+       FIELD(cscd_proximity, separation))
 FIELDS(proximities, FIELD(cscd_proximities, items), FIELD(cscd_proximities, count))
 FIELDS(free_step, FIELD(cscd_free_step, fraction), FIELD(cscd_free_step, limited),
        FIELD(cscd_free_step, moved), FIELD(cscd_free_step, limit))

@@ -125,6 +125,37 @@ def test_slow_steps() -> None:
     assert answered > 60
 
 
+def check_middles(found: Any, x: Any) -> None:
+    """Halves of what both features name; u and v lead to the same weights as those of a contact."""
+    middles = 0.5 * (np.abs(found.weights)[..., None] * x[found.vertices]).sum(axis=1)
+    assert np.abs(found.points(x) - middles).max(initial=0.0) < 1e-12 * max(1.0, np.abs(x).max())
+    vf = found.kind == 0
+    assert np.array_equal(found.weights[vf, 1], found.u[vf] + found.v[vf] - 1.0)
+    assert np.array_equal(found.weights[~vf, 0], 1.0 - found.u[~vf])
+
+
+def test_pairs_beyond_what_they_keep() -> None:
+    """The pairs within the sum of separation and distance, of a detector and on a line; weights are thirds of areas."""
+    for i, (name, scene) in enumerate(SCENES[:6]):
+        mesh = mesh_of(scene)
+        detector, plain = cscd.Detector(mesh, min_separation=0.05), cscd.Detector(mesh)
+        found, expected = detector.near(scene.x0, 0.03, beyond=True), plain.near(scene.x0, 0.08)
+        assert np.array_equal(names_of(found), names_of(expected)), name
+        assert (found.separation == 0.05).all() and (expected.separation == 0.0).all()
+        line = detector.line_search(scene.x0, scene.x1, 0.03)
+        for unique in (False, True):
+            here = detector.near(line.positions(0.5), 0.03, unique, True)
+            assert np.array_equal(line.near(0.5, 0.03, unique, True), here), name
+        assert (found.weight == 1.0).all()
+        plain.set_rest(scene.x0)
+        corners = scene.x0[scene.F]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+        around = np.bincount(scene.F.ravel(), np.repeat(areas / 3, 3), len(scene.x0))
+        weighed = plain.near(scene.x0, 0.08)
+        vf = weighed.kind == 0
+        assert np.allclose(weighed.weight[vf], around[weighed.a[vf]] / 4, rtol=1e-12)
+
+
 def test_pairs_that_are_near() -> None:
     """Every pair of features within the distance, and the nearest points that its weights name."""
     count = 0
@@ -139,6 +170,7 @@ def test_pairs_that_are_near() -> None:
         assert (found.distance <= distance * (1 + 1e-6)).all() and (found["count"] == 1).all()
         unique = detector.near(scene.x0, distance, unique=True)
         assert unique["count"].sum() == len(found) or unique.distance.max() > distance
+        check_middles(found, scene.x0)
         count += len(found)
     assert count > 3000
 

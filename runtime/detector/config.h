@@ -3,7 +3,7 @@
 
 #include "cscd/research.h"
 #include "runtime/culling/culling.h"
-#include "runtime/detector/edge_rest.h"
+#include "runtime/detector/rest_shape.h"
 #include "runtime/detector/search.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "src/core/names.h"
@@ -40,7 +40,7 @@ typedef struct detector_config {
 
     part_labels parts;    /* see cscd_detector_set_parts */
     part_labels grouping; /* see cscd_detector_set_bodies */
-    edge_rest rest;       /* see cscd_detector_set_rest */
+    rest_shape rest;      /* see cscd_detector_set_rest */
     size_t memory_most;   /* what answers may take, where the caller does not say; 0: not known yet */
 } detector_config;
 
@@ -80,6 +80,11 @@ static inline bool config_culls(const detector_config *c) {
 /* True if the method's hider hides pairs within a component. */
 static inline bool config_hides_pairs(const detector_config *c) {
     return c->stages->hider != NULL && c->limit.distance == 0.0 && c->pair_rules.greatest_to_itself == 0.0;
+}
+
+/* The greatest distance that a pair may have to keep. */
+static inline double config_greatest_separation(const detector_config *c) {
+    return c->limit.distance > c->pair_rules.greatest ? c->limit.distance : c->pair_rules.greatest;
 }
 
 /* The widening of a step's volumes. */

@@ -157,7 +157,7 @@ void detector_free(cscd_detector *d) {
     part_labels_free(context, &d->config.grouping);
     part_sums_free(context, &d->results.part_sums);
     result_buffer_free(context, &d->results.contact_parts);
-    edge_rest_free(context, &d->config.rest);
+    rest_shape_free(context, &d->config.rest);
     context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);
     context_free(context, d->unpacked[1]);

@@ -131,8 +131,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK) status = detector_create_baseline(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->known.before);
     if (status == CSCD_OK) status = collapsed_create(d->mesh, &d->known.collapsed);
-    if (status == CSCD_OK)
-        status = edge_rest_move(d->context, &from->config.rest, m->change, &d->config.rest);
+    if (status == CSCD_OK) status = rest_shape_move(&from->config.rest, d->mesh, m->change, &d->config.rest);
     if (status == CSCD_OK)
         status = part_labels_move(&from->config.parts, d->mesh, m->change, &d->config.parts);
     if (status == CSCD_OK)
@@ -334,7 +333,7 @@ static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     if (status == CSCD_OK) status = rollback_create(mesh, &d->known.before);
     if (status == CSCD_OK) status = clone_collapsed(&from->known.collapsed, mesh, &d->known.collapsed);
     if (status == CSCD_OK) status = pair_rules_copy(&from->config.pair_rules, mesh, &d->config.pair_rules);
-    if (status == CSCD_OK) status = edge_rest_copy(&from->config.rest, mesh, &d->config.rest);
+    if (status == CSCD_OK) status = rest_shape_copy(&from->config.rest, mesh, &d->config.rest);
     if (status == CSCD_OK) status = part_labels_copy(&from->config.parts, mesh, &d->config.parts);
     if (status == CSCD_OK) status = part_labels_copy(&from->config.grouping, mesh, &d->config.grouping);
     if (status == CSCD_OK) status = clone_lists(from, d);

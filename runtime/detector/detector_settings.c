@@ -311,7 +311,7 @@ static cscd_status take_rest(cscd_detector *d, const cscd_view *rest) {
     const double *x = NULL;
     cscd_status status = views_read(d->context, d->mesh, rest, "rest", &d->unpacked[0], &x);
     if (status == CSCD_OK) status = positions_check(d->context, x, d->mesh->vertex_count, "rest");
-    return status == CSCD_OK ? edge_rest_set(d->context, d->mesh, x, &d->config.rest) : status;
+    return status == CSCD_OK ? rest_shape_set(d->context, d->mesh, x, &d->config.rest) : status;
 }
 
 cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest) {
@@ -320,7 +320,7 @@ cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *res
     if (!object_enter(detector, &entry)) return entry.status;
     cscd_status status = CSCD_OK;
     if (rest == NULL)
-        edge_rest_free(detector->context, &detector->config.rest);
+        rest_shape_free(detector->context, &detector->config.rest);
     else
         status = take_rest(detector, rest);
     return context_leave(&entry, status);

@@ -330,10 +330,13 @@ cscd_status candidates_take(const search_space *s, candidates *out) {
 cscd_status candidates_collect(const candidate_quest *quest, const double *x0, const double *x1,
                                candidates *out) {
     search_space *space = quest->space;
-    interval_search search = interval_search_begin(space, x0, x1, (separation){quest->reach, quest->reach});
-    volume_growth growth = {quest->reach, quest->growth.of_objects, quest->margin};
+    const bool thick = quest->growth.of_objects != NULL;
+    const double same = quest->growth.distance + (thick ? 0.0 : quest->reach);
+    interval_search search = interval_search_begin(space, x0, x1, (separation){same, same});
+    volume_growth growth = {quest->growth.distance, quest->growth.of_objects, quest->reach + quest->margin};
     search.interval.collecting = true;
-    search.interval.thick = growth.of_objects != NULL;
+    search.interval.thick = thick;
+    search.interval.activation = thick ? quest->reach : 0.0;
     search.interval.beyond = quest->margin;
     cscd_status status = bvh_rebuild_move(quest->rebuild, &space->bvh, x0, x1, growth, quest->growth);
     if (status == CSCD_OK) status = interval_search_everything(&search);

@@ -85,12 +85,12 @@ typedef struct candidates {
     candidate_list lists[2]; /* by cscd_contact_kind */
 } candidates;
 
-/* The candidates that are wanted: all pairs that come within reach, or within their own distance if this is more; the margin is
- * added to both. */
+/* The candidates that are wanted: all pairs that come within what they have to keep and the reach, as computed with this
+ * margin. */
 typedef struct candidate_quest {
     search_space *space;
     bvh_rebuild *rebuild; /* of its trees */
-    volume_growth growth; /* of a step */
+    volume_growth growth; /* of a step, whose distances are those that pairs keep */
     double reach, margin;
 } candidate_quest;
 

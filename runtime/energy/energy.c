@@ -127,7 +127,7 @@ static const char *fault_of_item(const cscd_mesh *mesh, const cscd_proximity *p)
         if (p->vertices[i] >= mesh->vertex_count) return "names a vertex that the mesh does not have";
     }
     if (!weights_fit(p)) return "has weights that are not those of its kind (cscd_stencil)";
-    if (!is_amount(p->count)) return "has a weight below 0 or without an end";
+    if (!is_amount(p->weight)) return "has a weight below 0 or without an end";
     if (!is_amount(energy_separation_of(p))) return "has a separation below 0 or without an end";
     return p->threshold >= 0.0 ? NULL : "has a threshold below 0";
 }

@@ -48,12 +48,10 @@ static inline int energy_vertices_of(cscd_contact_kind kind) {
 
 /* The factor of a pair that pair lists give it, and the distance that it is to keep. */
 static inline double energy_weight_of(const cscd_energy_options *options, const cscd_proximity *item) {
-    (void)options;
-    return item->count;
+    return options->by_count ? item->count : item->weight;
 }
 static inline double energy_separation_of(const cscd_proximity *item) {
-    (void)item;
-    return 0.0;
+    return item->separation;
 }
 
 /* The energy of one item, and the derivatives that are wanted. */

@@ -52,7 +52,7 @@ void loose_elements_move(loose_elements *e, const swept_interval *interval);
 static inline double loose_reach(const swept_interval *interval, uint32_t object) {
     double own = interval->thick ? interval->filter.rules->reaches[object] : 0.0;
     double distance = own > interval->limit.distance ? own : interval->limit.distance;
-    return 0.5 * (distance + interval->beyond) * (1.0 + 0x1p-40);
+    return 0.5 * (distance + interval->activation + interval->beyond) * (1.0 + 0x1p-40);
 }
 
 /* ---- pairs --------------------------------------------------------------------------------------------- */

@@ -27,6 +27,7 @@ typedef struct swept_interval {
     separation limit;       /* of every pair; distance 0: a contact is touching */
     bool thick;             /* a pair's distance is that of the rules, where this is the greater one */
     double tolerance;       /* of these distances, as a share of them; 0: the default */
+    double activation;      /* above 0, where thick: pairs are found within so much more than that */
     double beyond;          /* volumes are compared within so much more than the pairs' distances */
     double floor_ratio;     /* above 0: pairs that start nearer than they should have a floor instead */
     bool collecting;        /* pairs of features become the workers' candidates instead of being tested */
@@ -59,16 +60,17 @@ static inline uint32_t object_of_edge(const swept_interval *interval, uint32_t e
     return interval->filter.rules->component_objects[edge_component(mesh, edge)];
 }
 
-/* Returns the distance that two objects have to keep, and its tolerance. */
+/* Returns the distance within which two objects are found: that which they have to keep, or so much more; and its
+ * tolerance. */
 static inline separation object_separation(const swept_interval *interval, uint32_t a, uint32_t b) {
     if (!interval->thick) return interval->limit;
     double distance = pair_rules_distance(interval->filter.rules, a, b);
     if (distance < interval->limit.distance) distance = interval->limit.distance;
+    if (interval->activation > 0.0) return proximity_limit(distance + interval->activation);
     return separation_limit(distance, interval->tolerance);
 }
 
-/* Returns the distance that features a and b, as in cscd_contact, have to keep. Points may be named as
- * edges. */
+/* Returns the same of features a and b, as in cscd_contact. Points may be named as edges. */
 static inline separation pair_separation(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                          uint32_t b) {
     if (!interval->thick) return interval->limit;

@@ -158,8 +158,9 @@ struct cscd_line_search {
 
     uint32_t rules_revision; /* of the detector, at the begin */
     uint32_t mesh_revision;  /* of the detector, when the arrays were allocated */
-    double reach, covered;   /* covered: all pairs that come within this distance are candidates */
-    double beyond;           /* ... as are those that are so much farther apart */
+    double reach;
+    double separation; /* of the detector, at the begin */
+    double covered;    /* all pairs that come within so much more than they have to keep are candidates */
     bool begun;
     double done; /* estimated share of the current step: each try takes half of what is left */
     candidates candidates;
@@ -277,13 +278,14 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
     m = motion_of(line);
-    line->covered = max_of(d->config.limit.distance, reach);
-    line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
+    line->separation = d->config.limit.distance;
+    double floors = detector_floors_beyond(d, line->separation + reach, line->x0, line->x1);
+    line->covered = reach + floors;
     line->rules_revision = d->config.rules_revision;
     detector_begin_call(d);
     const waiting_place waiting = detector_waiting_place(d);
-    const candidate_quest quest = {&d->space, &d->rebuild, config_growth(&d->config), line->covered,
-                                   line->beyond + motion_rounding(&m)};
+    const candidate_quest quest = {&d->space, &d->rebuild, config_growth(&d->config), reach,
+                                   floors + motion_rounding(&m)};
     status = waiting_settle(&waiting, line->x0);
     if (status == CSCD_OK) status = candidates_collect(&quest, line->x0, line->x1, &line->candidates);
     if (status == CSCD_OK) status = context_progress_status(d->context);
@@ -357,6 +359,13 @@ static cscd_status check_rules(const cscd_line_search *line, const char *functio
                         function);
 }
 
+/* Are all pairs candidates that come within so much more than they have to keep now? cscd_detector_set_separation may have
+ * been called since the line began; the separation is added to what was covered beyond the one then. */
+static bool more_covered(const cscd_line_search *line, double more) {
+    double grown = max_of(line->detector->config.limit.distance - line->separation, 0.0);
+    return grown + more <= line->covered;
+}
+
 /* ---- moments ------------------------------------------------------------------------------------------- */
 
 static cscd_status check_fraction(const cscd_line_search *line, double fraction, const char *function) {
@@ -412,8 +421,8 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     cscd_detector *d = line->detector;
     cscd_status status = check_fraction(line, fraction, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_find_near");
-    if (status == CSCD_OK) status = proximity_check_distance(d->context, distance);
     if (status == CSCD_OK) status = proximity_check_form(d->context, form);
+    if (status == CSCD_OK) status = proximity_check_distance(d, distance, form);
     if (status != CSCD_OK) return status;
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_find_near: out is NULL");
@@ -422,13 +431,19 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
             d->context, CSCD_INVALID_ARGUMENT,
             "cscd_line_search_find_near: distance is %g, but the line was begun with a reach of %g", distance,
             line->reach);
+    if ((form & CSCD_NEAR_BEYOND) != 0 && !more_covered(line, distance))
+        return context_fail(
+            d->context, CSCD_INVALID_ARGUMENT,
+            "cscd_line_search_find_near: min_separation is %g since the line was begun, and its "
+            "candidates reach to %g only; call cscd_line_search_begin again",
+            d->config.limit.distance, line->separation + line->covered);
     detector_begin_call(d);
     straight_motion m = motion_of(line);
     motion_at(&m, fraction, line->reached);
     cscd_proximities found;
     const waiting_place waiting = detector_waiting_place(d);
     status = waiting_look(&waiting, line->x0);
-    interval_search search = proximity_search(d, line->reached, distance);
+    interval_search search = proximity_search(d, line->reached, distance, form);
     if (status == CSCD_OK) status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
     if (status == CSCD_LIST_TOO_LONG) *out = found;
@@ -478,13 +493,12 @@ static void carry_states_over(cscd_line_search *line) {
  * began. */
 static cscd_status check_covered(const cscd_line_search *line) {
     const cscd_detector *d = line->detector;
-    double beyond = detector_floors_beyond(d, d->config.limit.distance, line->x0, line->x1);
-    bool covered = d->config.limit.distance + beyond <= line->covered + line->beyond;
-    if (covered && (!config_is_thick(&d->config) || beyond <= line->beyond)) return CSCD_OK;
+    if (more_covered(line, detector_floors_beyond(d, d->config.limit.distance, line->x0, line->x1)))
+        return CSCD_OK;
     return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                         "cscd_line_search_max_step: min_separation is %g since the line was begun, and its "
                         "candidates reach to %g only; call cscd_line_search_begin again",
-                        d->config.limit.distance, line->covered);
+                        d->config.limit.distance, line->separation + line->covered);
 }
 
 static cscd_status max_step_on_line(cscd_line_search *line, double longest, const cscd_mutable_view *reached,

@@ -13,12 +13,8 @@
 /* Pairs are looked for so much farther away than they need to, which covers the rounding of the sum, too. */
 static const double farther = 1.0 + 0x1p-17;
 
-static double greatest_separation(const cscd_detector *d) {
-    return max_of(d->config.limit.distance, d->config.pair_rules.greatest);
-}
-
 static double search_distance(const cscd_detector *d, double search_radius) {
-    return (search_radius + greatest_separation(d)) * farther;
+    return (search_radius + config_greatest_separation(&d->config)) * farther;
 }
 
 /* INVALID_ARGUMENT, unless pairs can be looked for within this radius. */
@@ -32,12 +28,11 @@ static cscd_status check_radius(const cscd_detector *d, double search_radius) {
 }
 
 /* Points that have no distance to keep from a wire, or from each other, may go where they want. */
-static size_t keep_counting(const cscd_detector *d, cscd_proximity *items, size_t count) {
-    const near_rules rules = {d->mesh, &d->config};
+static size_t keep_counting(cscd_proximity *items, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
         bool of_points = items[i].kind == CSCD_CONTACT_VV || items[i].kind == CSCD_CONTACT_EV;
-        if (!of_points || near_pair_separation(&rules, &items[i]) > 0.0) items[kept++] = items[i];
+        if (!of_points || items[i].separation > 0.0) items[kept++] = items[i];
     }
     return kept;
 }
@@ -48,7 +43,7 @@ static cscd_status find_near_pairs(cscd_detector *d, const double *x, double sea
                                    cscd_proximities *out) {
     cscd_status status = proximity_find(d, x, search_distance(d, search_radius), CSCD_NEAR_PAIRS, out);
     if (status == CSCD_OK && d->mesh->loose.point_count > 0)
-        out->count = keep_counting(d, d->results.proximities.items, out->count);
+        out->count = keep_counting(d->results.proximities.items, out->count);
     return status;
 }
 
@@ -87,20 +82,17 @@ static void measure_share(void *data, uint32_t index) {
     size_t begin = (size_t)index * NEAR_PAIRS_PER_SHARE, end = begin + NEAR_PAIRS_PER_SHARE;
     for (size_t i = begin; i < end && i < w->near->count; i++) {
         const cscd_proximity *pair = &w->near->items[i];
-        cscd_stencil stencil = near_pair_stencil(w->rules.mesh, pair);
         double points[4][3];
-        near_pair_load(w->x0, &stencil, points);
+        near_pair_load(w->x0, pair->vertices, points);
         double gap = near_pair_gap(&w->rules, pair, (const double(*)[3])points);
         w->limits[i] = stored_below(bounds_share * gap, w->scalar);
     }
 }
 
-static void lower_bounds(const cscd_mesh *mesh, const cscd_proximities *near, const double *limits,
-                         double *bounds) {
+static void lower_bounds(const cscd_proximities *near, const double *limits, double *bounds) {
     for (size_t i = 0; i < near->count; i++) {
-        cscd_stencil stencil = near_pair_stencil(mesh, &near->items[i]);
         for (int j = 0; j < 4; j++) {
-            double *bound = &bounds[stencil.vertices[j]];
+            double *bound = &bounds[near->items[i].vertices[j]];
             *bound = min_of(*bound, limits[i]);
         }
     }
@@ -149,7 +141,7 @@ static cscd_status find_bounds(cscd_detector *d, const double *x0, double search
     parallel_run(d->context->threads, shares, measure_share, &work);
     double farthest = stored_below(0.5 * search_radius, scalar);
     for (uint32_t v = 0; v < d->mesh->vertex_count; v++) bounds[v] = farthest;
-    lower_bounds(d->mesh, &near, work.limits, bounds);
+    lower_bounds(&near, work.limits, bounds);
     join_seams(d, bounds);
     *out = (cscd_displacement_bounds){.blocked = d->results.proximities.items, .near_count = near.count};
     out->blocked_count = keep_blocked(d->results.proximities.items, near.count, work.limits);
@@ -512,7 +504,8 @@ static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, 
     if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &motion.x0);
     if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &motion.x1);
     if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
-    if (status == CSCD_OK) status = truncation_scalars(detector, "cscd_detector_truncate", x0, reached, &motion.scalars);
+    if (status == CSCD_OK)
+        status = truncation_scalars(detector, "cscd_detector_truncate", x0, reached, &motion.scalars);
     if (status == CSCD_OK) status = truncate_between(detector, &motion, search_radius, &found);
     if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
     if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;

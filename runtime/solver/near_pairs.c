@@ -7,22 +7,22 @@
 
 #include <string.h>
 
-double near_pair_separation(const near_rules *r, const cscd_proximity *pair) {
+double near_separation(const near_rules *r, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const swept_interval rules = {.mesh = r->mesh,
                                   .filter = {r->mesh, &r->config->pair_rules, NULL, NULL},
                                   .limit = r->config->limit,
                                   .thick = config_is_thick(r->config)};
-    return pair_separation(&rules, pair->kind, pair->a, pair->b).distance;
+    return pair_separation(&rules, kind, a, b).distance;
 }
 
 double near_pair_gap(const near_rules *r, const cscd_proximity *pair, const double points[4][3]) {
-    double apart = near_pair_separation(r, pair);
-    if (pair->kind == CSCD_CONTACT_VH) return half_space_gap(points, r->mesh->loose.normals[pair->b], apart);
-    return pair_gap(stencil_points(pair->kind), points, apart);
+    if (pair->kind == CSCD_CONTACT_VH)
+        return half_space_gap(points, r->mesh->loose.normals[pair->b], pair->separation);
+    return pair_gap(stencil_points(pair->kind), points, pair->separation);
 }
 
-void near_pair_load(const double *x, const cscd_stencil *stencil, double points[4][3]) {
-    for (int i = 0; i < 4; i++) memcpy(points[i], x + (size_t)stencil->vertices[i] * 3, sizeof points[i]);
+void near_pair_load(const double *x, const uint32_t vertices[4], double points[4][3]) {
+    for (int i = 0; i < 4; i++) memcpy(points[i], x + (size_t)vertices[i] * 3, sizeof points[i]);
 }
 
 /* ---- planes -------------------------------------------------------------------------------------------- */
@@ -90,15 +90,14 @@ static double find_plane(const cscd_mesh *mesh, const cscd_proximity *pair, cons
  * that its sides may part. */
 static void divide_pair(const division_work *w, const cscd_proximity *pair, division_plane *out) {
     const cscd_mesh *mesh = w->rules->mesh;
-    cscd_stencil stencil = near_pair_stencil(mesh, pair);
     double points[4][3];
     pair_plane plane;
-    near_pair_load(w->quest->x0, &stencil, points);
+    near_pair_load(w->quest->x0, pair->vertices, points);
     double length = find_plane(mesh, pair, (const double(*)[3])points, &plane);
     *out = (division_plane){.kind = pair->kind, .room = {-1.0, -1.0, -1.0, -1.0}};
-    memcpy(out->vertices, stencil.vertices, sizeof out->vertices);
+    memcpy(out->vertices, pair->vertices, sizeof out->vertices);
     if (!(plane.gap > 0.0)) return;
-    double room = max_of(plane.gap - near_pair_separation(w->rules, pair) * length, 0.0) * planes_share;
+    double room = max_of(plane.gap - pair->separation * length, 0.0) * planes_share;
     approach wanted = approach_of(w, &plane, out);
     double for_a = share_of_a(mesh, out, &wanted, room), for_b = max_of(room - for_a, 0.0);
     memcpy(out->normal, plane.normal, sizeof out->normal);

@@ -10,22 +10,18 @@ typedef struct near_rules {
     const detector_config *config;
 } near_rules;
 
+/* The distance that two features must keep: 0, the detector's separation, or that of the rules for their objects. */
+double near_separation(const near_rules *r, cscd_contact_kind kind, uint32_t a, uint32_t b);
+
 /* The number of pairs that one thread takes at a time. */
 enum { NEAR_PAIRS_PER_SHARE = 1024 };
-
-/* The distance that the pair must keep: 0, the detector's separation, or that of the rules for its objects. */
-double near_pair_separation(const near_rules *r, const cscd_proximity *pair);
 
 /* Returns a number that is at most the pair's distance less what it must keep, and at least 0.985 times that; see
  * pair_gap. */
 double near_pair_gap(const near_rules *r, const cscd_proximity *pair, const double points[4][3]);
 
 /* Copies the points of a pair, in the order of cscd_stencil. */
-void near_pair_load(const double *x, const cscd_stencil *stencil, double points[4][3]);
-
-static inline cscd_stencil near_pair_stencil(const cscd_mesh *mesh, const cscd_proximity *pair) {
-    return cscd_mesh_stencil(mesh, pair->kind, pair->a, pair->b, pair->u, pair->v);
-}
+void near_pair_load(const double *x, const uint32_t vertices[4], double points[4][3]);
 
 /* ---- planes -------------------------------------------------------------------------------------------- */
 

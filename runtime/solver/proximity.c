@@ -1,5 +1,6 @@
 /* Pairs of features that are near each other at one moment: how they are found, described, and listed with or without
  * repetitions. */
+#include "runtime/solver/near_pairs.h"
 #include "runtime/solver/solver.h"
 
 #include "runtime/ccd/ccd.h"
@@ -16,7 +17,8 @@
 typedef struct proximity_scene {
     const cscd_mesh *mesh;
     const double *positions;
-    const edge_rest *rest;
+    const rest_shape *rest;
+    near_rules rules;
 } proximity_scene;
 
 /* Returns how many of the four vertices of a stencil belong to the first feature. */
@@ -35,16 +37,17 @@ static void connect_points(const proximity_scene *scene, const cscd_proximity *p
     connection_between(x, p->weights, vertices_of_first(p->kind), apart);
 }
 
-/* Written in place, because a copy need not keep the padding. */
-static void begin_item(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
+/* Lists are compared bit for bit: the struct has no padding. */
+_Static_assert(sizeof(cscd_proximity) == 128, "an item fills two lines of a cache");
+
+static void begin_item(const proximity_scene *scene, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
                        double v, cscd_proximity *p) {
-    cscd_stencil s = mesh_stencil(mesh, kind, a, b, u, v);
-    memset(p, 0, sizeof *p); /* lists are compared bit for bit */
+    cscd_stencil s = mesh_stencil(scene->mesh, kind, a, b, u, v);
+    memset(p, 0, sizeof *p);
     p->kind = kind;
     p->a = a;
     p->b = b;
-    p->u = u;
-    p->v = v;
+    p->separation = near_separation(&scene->rules, kind, a, b);
     memcpy(p->vertices, s.vertices, sizeof p->vertices);
     memcpy(p->weights, s.weights, sizeof p->weights);
 }
@@ -52,7 +55,7 @@ static void begin_item(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a
 /* Describes a pair of features as it was found. */
 static void proximity_describe(const proximity_scene *scene, const cscd_contact *found, cscd_proximity *out) {
     double apart[3];
-    begin_item(scene->mesh, found->kind, found->a, found->b, found->u, found->v, out);
+    begin_item(scene, found->kind, found->a, found->b, found->u, found->v, out);
     connect_points(scene, out, apart);
     bool vf = found->kind == CSCD_CONTACT_VF, ee = found->kind == CSCD_CONTACT_EE;
     out->distance =
@@ -60,8 +63,8 @@ static void proximity_describe(const proximity_scene *scene, const cscd_contact 
     out->count = 1;
     out->vf_count = vf;
     out->ee_count = ee;
-    out->threshold = ee ? edge_rest_threshold(scene->rest, found->a, found->b) : 0.0;
-    memcpy(out->point, found->point, sizeof out->point);
+    out->threshold = ee ? rest_shape_threshold(scene->rest, found->a, found->b) : 0.0;
+    out->weight = rest_shape_weight(scene->rest, found->kind, found->a, found->b);
     memcpy(out->normal, found->normal, sizeof out->normal);
 }
 
@@ -82,14 +85,10 @@ static double nearest_on_edge(const proximity_scene *scene, uint32_t edge, uint3
 static void proximity_describe_parts(const proximity_scene *scene, cscd_contact_kind kind, uint32_t a,
                                      uint32_t b, cscd_proximity *out) {
     double apart[3], u = kind == CSCD_CONTACT_EV ? nearest_on_edge(scene, a, b) : 0.0;
-    begin_item(scene->mesh, kind, a, b, u, 0.0, out);
+    begin_item(scene, kind, a, b, u, 0.0, out);
     connect_points(scene, out, apart);
     out->distance = connection_length(apart);
-    const double *from = position_of(scene, b);
-    for (int k = 0; k < 3; k++) {
-        out->point[k] = from[k] + 0.5 * apart[k];
-        out->normal[k] = out->distance > 0.0 ? apart[k] / out->distance : 0.0;
-    }
+    for (int k = 0; k < 3; k++) out->normal[k] = out->distance > 0.0 ? apart[k] / out->distance : 0.0;
 }
 
 /* The squared length of the cross product of the edges' vectors. */
@@ -105,7 +104,7 @@ static double crossing_of(const proximity_scene *scene, uint32_t a, uint32_t b) 
 /* True if two edges are so nearly parallel that the mollifier of their energy is below 1. A crossing that overflows is above
  * every threshold; one that underflows is below every threshold that is not 0. */
 static bool edges_mollified(const proximity_scene *scene, uint32_t a, uint32_t b) {
-    double threshold = edge_rest_threshold(scene->rest, a, b);
+    double threshold = rest_shape_threshold(scene->rest, a, b);
     return threshold > 0.0 && crossing_of(scene, a, b) < threshold;
 }
 
@@ -226,10 +225,11 @@ static void describe_group(const merging *m, size_t group) {
     }
     proximity_describe_parts(m->scene, name->kind, name->a, name->b, item);
     for (size_t i = m->begins[group]; i < m->begins[group + 1]; i++) {
-        cscd_contact_kind kind = m->keys[i].name->contact->kind;
-        item->vf_count += kind == CSCD_CONTACT_VF;
-        item->ee_count += kind == CSCD_CONTACT_EE;
+        const cscd_contact *pair = m->keys[i].name->contact;
+        item->vf_count += pair->kind == CSCD_CONTACT_VF;
+        item->ee_count += pair->kind == CSCD_CONTACT_EE;
         item->count++;
+        item->weight += rest_shape_weight(m->scene->rest, pair->kind, pair->a, pair->b);
     }
 }
 
@@ -247,7 +247,7 @@ static void run_shares(cscd_context *context, size_t count, parallel_task *task,
 _Static_assert(sizeof(size_t) < sizeof(name_key), "the spare keys have room for one more begin than pairs");
 
 /* Merges `count` pairs, given by keys, into items. *unique says how many there are. They are sorted by (kind, a, b), and the
- * same for any order of the keys. scratch is grown and kept. */
+ * same for any order of the keys, up to the rounding of weights. scratch is grown and kept. */
 static cscd_status unique_pairs_list(cscd_context *context, const proximity_scene *scene,
                                      const contact_key *keys, size_t count, result_buffer *scratch,
                                      cscd_proximity *items, size_t *unique) {
@@ -271,10 +271,13 @@ static cscd_status unique_pairs_list(cscd_context *context, const proximity_scen
 
 /* ---- lists --------------------------------------------------------------------------------------------- */
 
-cscd_status proximity_check_distance(cscd_context *context, double distance) {
-    if (is_positive_length(distance)) return CSCD_OK;
-    return context_fail(context, CSCD_INVALID_ARGUMENT,
-                        "distance is %g, expected a length from 2^-300 to 2^300", distance);
+cscd_status proximity_check_distance(const cscd_detector *d, double distance, cscd_near_form form) {
+    const bool beyond = (form & CSCD_NEAR_BEYOND) != 0;
+    const double farthest = beyond ? distance + config_greatest_separation(&d->config) : distance;
+    if (is_positive_length(distance) && is_positive_length(farthest)) return CSCD_OK;
+    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                        "distance is %g, expected a length from 2^-300 to 2^300%s", distance,
+                        beyond ? ", also with what pairs have to keep added to it" : "");
 }
 
 /* Sorts by (kind, a, b): first by b, then by kind and a, which keeps the order by b where these are equal. */
@@ -316,7 +319,7 @@ static cscd_status describe_pairs(cscd_detector *d, const proximity_scene *scene
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_near_form form,
                               cscd_proximities *out) {
     result_buffer *buffer = &d->results.proximities;
-    proximity_scene scene = {d->mesh, positions, &d->config.rest};
+    proximity_scene scene = {d->mesh, positions, &d->config.rest, {d->mesh, &d->config}};
     size_t found, count;
     cscd_status status =
         contact_list_gather(&d->space, &d->config.exclusions, sizeof(cscd_proximity), buffer, &found);
@@ -326,36 +329,56 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
     }
     if (status != CSCD_OK) return status;
     count = found;
-    if (form == CSCD_NEAR_UNIQUE)
+    if ((form & CSCD_NEAR_UNIQUE) != 0) {
+        /* so that weights are summed up in one order by any number of threads */
+        if (scene.rest->squared_lengths != NULL) sort_pairs(buffer->keys, buffer->spare_keys, found);
         status = unique_pairs_list(d->context, &scene, buffer->keys, found, &d->results.names, buffer->items,
                                    &count);
-    else
+    } else {
         status = describe_pairs(d, &scene, count);
+    }
     if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count};
     return status;
 }
 
 cscd_status proximity_check_form(cscd_context *context, cscd_near_form form) {
-    if ((unsigned)form <= CSCD_NEAR_UNIQUE) return CSCD_OK;
+    if ((unsigned)form <= (CSCD_NEAR_UNIQUE | CSCD_NEAR_BEYOND)) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
-                        "unknown form %d, expected CSCD_NEAR_PAIRS or CSCD_NEAR_UNIQUE", (int)form);
+                        "unknown form %d, expected CSCD_NEAR_PAIRS or CSCD_NEAR_UNIQUE, and CSCD_NEAR_BEYOND "
+                        "or not",
+                        (int)form);
 }
 
-interval_search proximity_search(cscd_detector *d, const double *positions, double distance) {
-    interval_search search =
-        interval_search_begin(&d->space, positions, positions, proximity_limit(distance));
+/* The distance that volumes are widened by, and the objects' own ones besides. */
+static volume_growth near_growth(const cscd_detector *d, double distance, cscd_near_form form) {
+    if ((form & CSCD_NEAR_BEYOND) == 0) return uniform_growth(distance);
+    volume_growth growth = config_growth(&d->config);
+    growth.beyond = distance;
+    return growth;
+}
+
+interval_search proximity_search(cscd_detector *d, const double *positions, double distance,
+                                 cscd_near_form form) {
+    const volume_growth growth = near_growth(d, distance, form);
+    const double same = growth.distance + growth.beyond;
+    interval_search search = interval_search_begin(&d->space, positions, positions, proximity_limit(same));
+    if (growth.of_objects != NULL) {
+        search.interval.limit = d->config.limit;
+        search.interval.thick = true;
+        search.interval.activation = distance;
+    }
     list_cap_begin(&d->interval, &search, CAP_TAINTS_LEFT_OUT);
     return search;
 }
 
 cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_near_form form,
                            cscd_proximities *out) {
-    interval_search search = proximity_search(d, positions, distance);
+    interval_search search = proximity_search(d, positions, distance, form);
     cscd_status status = CSCD_OK;
     if (d->config.stages->brute_force) {
         status = interval_search_by_brute_force(&search);
     } else {
-        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(distance),
+        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, near_growth(d, distance, form),
                                      config_growth(&d->config));
         if (status == CSCD_OK) status = interval_search_everything(&search);
         if (status == CSCD_OK) status = interval_search_loose(&search);
@@ -383,8 +406,8 @@ static cscd_status find_near_views(cscd_detector *detector, const cscd_view *pos
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_near: out is NULL");
     const double *x = NULL;
     cscd_proximities found;
-    cscd_status status = proximity_check_distance(context, distance);
-    if (status == CSCD_OK) status = proximity_check_form(context, form);
+    cscd_status status = proximity_check_form(context, form);
+    if (status == CSCD_OK) status = proximity_check_distance(detector, distance, form);
     if (status == CSCD_OK)
         status = views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = find_near_at(detector, x, distance, form, &found);

@@ -6,14 +6,15 @@
 
 /* ---- near pairs ---------------------------------------------------------------------------------------- */
 
-/* Returns INVALID_ARGUMENT, with a sentence, unless this is a distance that can be asked for. */
-cscd_status proximity_check_distance(cscd_context *context, double distance);
-
-/* The same for a form of the list. */
+/* Returns INVALID_ARGUMENT, with a sentence, unless this is a form of the list. */
 cscd_status proximity_check_form(cscd_context *context, cscd_near_form form);
 
+/* The same for a distance that can be asked for in this form. */
+cscd_status proximity_check_distance(const cscd_detector *d, double distance, cscd_near_form form);
+
 /* Begins a search of the moment with that limit. */
-interval_search proximity_search(cscd_detector *d, const double *positions, double distance);
+interval_search proximity_search(cscd_detector *d, const double *positions, double distance,
+                                 cscd_near_form form);
 
 /* Lists what the search has found, in the detector's memory, sorted by (kind, a, b). */
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_near_form form,

@@ -94,6 +94,7 @@ TEST(friction_is_that_of_coulomb) {
     c.options.slip = 0.01;
     c.item.kind = CSCD_CONTACT_VF;
     c.item.count = 1;
+    c.item.weight = 1.0;
     cscd_stencil_weights(CSCD_CONTACT_VF, 0.25, 0.25, c.item.weights);
     for (uint32_t i = 0; i < 4; i++) c.item.vertices[i] = i;
     const double x[12] = {0.25, 0.25, 0.6, 0, 0, 0, 1, 0, 0, 0, 1, 0}; /* force 2 * (1 - 0.6) */

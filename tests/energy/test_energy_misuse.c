@@ -38,7 +38,7 @@ static void make_right(wrong_call *w) {
     w->context = context_of(1, NULL);
     expect_ok(cscd_mesh_create(w->context, &points, 1, &w->mesh));
     expect_ok(cscd_energy_create(w->context, w->mesh, &w->energy));
-    w->item = (cscd_proximity){.kind = CSCD_CONTACT_VF, .count = 1, .vertices = {0, 1, 2, 3}};
+    w->item = (cscd_proximity){.kind = CSCD_CONTACT_VF, .count = 1, .weight = 1.0, .vertices = {0, 1, 2, 3}};
     cscd_stencil_weights(CSCD_CONTACT_VF, 0.25, 0.25, w->item.weights);
     w->items = (cscd_proximities){&w->item, 1};
     memcpy(w->x, x, sizeof x);

@@ -1,6 +1,8 @@
 /* What solvers ask about wires, points and half-spaces: proximity, certified steps, line searches, bounds, truncation. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
+#include "src/core/vec3.h"
+#include "src/mesh/mesh.h"
 #include "tests/support/calls.h"
 #include "tests/support/loose/loose_scene.h"
 #include "tests/support/test.h"
@@ -72,7 +74,7 @@ static void go_on(random_stream *random) {
 /* ---- proximity ------------------------------------------------------------------------------------------ */
 
 static bool has_weights_of(const cscd_proximity *p) {
-    cscd_stencil stencil = cscd_mesh_stencil(scene.mesh, p->kind, p->a, p->b, p->u, p->v);
+    cscd_stencil stencil = stencil_of_item(scene.mesh, p);
     return memcmp(stencil.weights, p->weights, sizeof p->weights) == 0 &&
            memcmp(stencil.vertices, p->vertices, sizeof p->vertices) == 0;
 }
@@ -97,19 +99,22 @@ static void check_gradient(const cscd_proximity *p) {
 }
 
 /* Every pair within the distance, once; and the sums of the form without repetitions. */
-static void compare_near(cscd_detector *detector, double distance, size_t by_kind[]) {
+static void compare_near(cscd_detector *detector, double reach, cscd_near_form beyond, size_t by_kind[]) {
     cscd_proximities near;
     size_t at = 0, merged = 0, loose = 0;
     double energy = 0.0, energy_merged = 0.0;
+    const cscd_view *x = CSCD_DOUBLES(scene.x0, scene.vertex_count);
     pair_count = loose_scene_pairs(&scene, true, pairs);
-    expect_ok(find_near_packed(detector, scene.x0, distance, &near));
+    expect_ok(cscd_detector_find_near(detector, x, reach, CSCD_NEAR_PAIRS | beyond, &near));
     for (size_t i = 0; i < pair_count; i++) {
         double apart = loose_pair_apart(&scene, &pairs[i], scene.x0);
+        double distance = reach + (beyond != 0 ? pairs[i].distance : 0.0);
         const cscd_proximity *p = &near.items[at];
         bool listed = at < near.count && p->kind == pairs[i].kind && p->a == pairs[i].a && p->b == pairs[i].b;
         assert_true(listed ? apart <= distance * (1.0 + 1e-6) : apart >= distance * (1.0 - 1e-12));
         if (!listed) continue;
         assert_true(fabs(p->distance - apart) < 1e-12 && p->count == 1 && has_weights_of(p));
+        assert_true(p->separation == pairs[i].distance && p->weight == 1.0);
         assert_true(p->vf_count == (p->kind == CSCD_CONTACT_VF) &&
                     p->ee_count == (p->kind == CSCD_CONTACT_EE));
         check_gradient(p);
@@ -120,14 +125,14 @@ static void compare_near(cscd_detector *detector, double distance, size_t by_kin
     }
     assert_int_equal(at, near.count);
     size_t all = near.count;
-    expect_ok(find_unique_packed(detector, scene.x0, distance, &near));
+    expect_ok(cscd_detector_find_near(detector, x, reach, CSCD_NEAR_UNIQUE | beyond, &near));
     for (size_t i = 0; i < near.count; i++) {
         const cscd_proximity *p = &near.items[i];
-        assert_true(has_weights_of(p) && p->vf_count + p->ee_count <= p->count);
+        assert_true(has_weights_of(p) && p->vf_count + p->ee_count <= p->count && p->weight == p->count);
         energy_merged += p->count * exp(-p->distance);
         merged += p->count;
         loose -= p->count - p->vf_count - p->ee_count;
-        if (p->kind == CSCD_CONTACT_EV) assert_true(p->u > 0.0 && p->u < 1.0);
+        if (p->kind == CSCD_CONTACT_EV) assert_true(p->weights[0] > 0.0 && p->weights[1] > 0.0);
     }
     assert_true(merged == all && loose == 0 && fabs(energy - energy_merged) < 1e-9 * (1.0 + energy));
 }
@@ -143,10 +148,89 @@ TEST(proximity_of_all_kinds) {
         recipe.triangles = seed % 6 != 0;
         cscd_detector *detector =
             open_scene(&recipe, seed % 7 == 0 ? CSCD_METHOD_BRUTE : CSCD_METHOD_NONE, seed, &random);
-        compare_near(detector, 0.25, by_kind);
+        compare_near(detector, 0.25, CSCD_NEAR_PAIRS, by_kind);
         close_scene(detector);
     }
     for (int k = 0; k <= CSCD_CONTACT_VH; k++) assert_true(k == CSCD_CONTACT_TT || by_kind[k] > PACED(20, 5));
+}
+
+/* Each pair is found within its own distance and so much more; and where all have one, within the sum. */
+TEST(proximity_beyond_separations) {
+    size_t by_kind[CSCD_CONTACT_VH + 1] = {0};
+    for (uint64_t seed = 0; seed < PACED(24, 12); seed++) {
+        random_stream random;
+        loose_recipe recipe = everything;
+        recipe.rules = seed % 3 == 1;
+        recipe.thickness = seed % 4 != 0;
+        recipe.matrix = seed % 4 == 2;
+        recipe.min_separation = seed % 8 == 4 ? 0.1 : 0.0;
+        recipe.triangles = seed % 6 != 0;
+        cscd_detector *detector =
+            open_scene(&recipe, seed % 7 == 0 ? CSCD_METHOD_BRUTE : CSCD_METHOD_NONE, 50 + seed, &random);
+        compare_near(detector, seed % 2 == 0 ? 0.15 : 0.04, CSCD_NEAR_BEYOND, by_kind);
+        compare_near(detector, 0.2, CSCD_NEAR_PAIRS, by_kind);
+        close_scene(detector);
+    }
+    for (int k = 0; k <= CSCD_CONTACT_VH; k++) assert_true(k == CSCD_CONTACT_TT || by_kind[k] > PACED(20, 5));
+}
+
+/* Of a wire the length of an edge, and half of those at a vertex; a point has 1. */
+static double area_of(const uint32_t *vertices, int count) {
+    const cscd_mesh *mesh = scene.mesh;
+    double area = 0.0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        int found = 0;
+        double u[3], v[3], across[3];
+        for (int i = 0; i < 3 * count; i++) found += mesh->triangles[t][i % 3] == vertices[i / 3];
+        if (found < count) continue;
+        for (size_t k = 0; k < 3; k++) {
+            u[k] = scene.x1[mesh->triangles[t][1] * 3 + k] - scene.x1[mesh->triangles[t][0] * 3 + k];
+            v[k] = scene.x1[mesh->triangles[t][2] * 3 + k] - scene.x1[mesh->triangles[t][0] * 3 + k];
+        }
+        vec3_cross(u, v, across);
+        area += sqrt(vec3_dot(across, across)) / 6.0;
+    }
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const uint32_t *ends = mesh->edges[e];
+        int found = 0;
+        for (int i = 0; i < 2 * count; i++) found += ends[i % 2] == vertices[i / 2];
+        if (!edge_is_loose(mesh, e) || found < count) continue;
+        area += 0.5 * count *
+                sqrt(vec3_squared_distance(scene.x1 + (size_t)ends[0] * 3, scene.x1 + (size_t)ends[1] * 3));
+    }
+    const uint32_t object = cscd_mesh_vertex_object(mesh, vertices[0]);
+    return scene.objects[object].kind == CSCD_OBJECT_POINTS ? 1.0 : area;
+}
+
+static double weight_of(const cscd_proximity *p) {
+    const bool vertex = p->kind != CSCD_CONTACT_EE && p->kind != CSCD_CONTACT_EV;
+    const double a = area_of(p->vertices, vertex ? 1 : 2);
+    if (p->kind == CSCD_CONTACT_VH) return a;
+    if (p->kind == CSCD_CONTACT_VF) return 0.25 * a;
+    const uint32_t *b = p->vertices + (vertex ? 1 : 2);
+    return 0.25 * (a + area_of(b, p->kind == CSCD_CONTACT_EE ? 2 : 1));
+}
+
+TEST(weights_of_all_kinds) {
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        random_stream random;
+        double sum = 0.0, sum_merged = 0.0;
+        cscd_proximities near;
+        cscd_detector *detector = open_scene(&everything, CSCD_METHOD_NONE, 80 + seed, &random);
+        expect_ok(set_rest_packed(detector, scene.x1));
+        expect_ok(find_near_packed(detector, scene.x0, 0.3, &near));
+        assert_true(near.count > 100);
+        for (size_t i = 0; i < near.count; i++) {
+            const cscd_proximity *p = &near.items[i];
+            assert_true(fabs(p->weight - weight_of(p)) <= 1e-12);
+            sum += p->weight * exp(-p->distance);
+        }
+        expect_ok(find_unique_packed(detector, scene.x0, 0.3, &near));
+        for (size_t i = 0; i < near.count; i++)
+            sum_merged += near.items[i].weight * exp(-near.items[i].distance);
+        assert_true(fabs(sum - sum_merged) <= 1e-11 * sum);
+        close_scene(detector);
+    }
 }
 
 /* ---- steps ------------------------------------------------------------------------------------------------ */
@@ -265,7 +349,7 @@ TEST(moments_on_a_line) {
         expect_ok(cscd_line_search_create(detector, &line));
         expect_ok(line_begin_packed(line, scene.x0, scene.x1, 0.2));
         for (int i = 0; i <= 4; i++) {
-            for (int form = CSCD_NEAR_PAIRS; form <= CSCD_NEAR_UNIQUE; form++) {
+            for (int form = CSCD_NEAR_PAIRS; form <= (CSCD_NEAR_UNIQUE | CSCD_NEAR_BEYOND); form++) {
                 cscd_proximities near;
                 expect_ok(cscd_line_search_find_near(line, 0.25 * i, 0.2, (cscd_near_form)form, &near));
                 assert_true(near.count > 0 && near.count < LOOSE_LIST_MAX);

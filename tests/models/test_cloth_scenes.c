@@ -110,7 +110,7 @@ static meetings count_meetings(cloth_trial *t) {
     assert_int_equal(find_near_packed(t->judge, t->run.positions, reach, &near), CSCD_OK);
     for (size_t i = 0; i < near.count; i++) {
         const cscd_proximity *p = &near.items[i];
-        cscd_stencil s = cscd_mesh_stencil(t->run.mesh, p->kind, p->a, p->b, p->u, p->v);
+        cscd_stencil s = stencil_of_item(t->run.mesh, p);
         uint32_t first = cscd_mesh_vertex_object(t->run.mesh, s.vertices[0]);
         uint32_t last = cscd_mesh_vertex_object(t->run.mesh, s.vertices[3]);
         double between[3];

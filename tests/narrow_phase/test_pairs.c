@@ -198,17 +198,28 @@ TEST(separations_are_those_of_a_step) {
     }
 }
 
-static void expect_same_distance(const cscd_pair_distance *found, const cscd_proximity *expected) {
+/* The middle between the nearest points, up to the rounding of a few sums. Where features touch but for rounding the normal
+ * lies across both. */
+static void expect_same_point(const cscd_pair_distance *found, const cscd_proximity *expected, int query) {
+    double point[3], largest = 0.0;
+    cscd_proximity_point(expected, x0[4 * query], point);
+    for (int i = 0; i < 12; i++) largest = fmax(largest, fabs(x0[4 * query + i / 3][i % 3]));
+    for (int k = 0; k < 3; k++) assert_true(fabs(found->point[k] - point[k]) <= 0x1p-46 * largest);
+}
+
+static void expect_same_distance(const cscd_pair_distance *found, const cscd_proximity *expected, int query) {
+    double u, v;
     static const cscd_pair_distance none = {.distance = INFINITY};
     if (expected == NULL) {
         assert_memory_equal(found, &none, sizeof none);
         return;
     }
     assert_memory_equal(&found->distance, &expected->distance, sizeof found->distance);
-    assert_memory_equal(&found->u, &expected->u, sizeof found->u);
-    assert_memory_equal(&found->v, &expected->v, sizeof found->v);
-    assert_memory_equal(found->point, expected->point, sizeof found->point);
+    cscd_stencil_parameters(expected->kind, expected->weights, &u, &v);
+    assert_memory_equal(&found->u, &u, sizeof u);
+    assert_memory_equal(&found->v, &v, sizeof v);
     assert_memory_equal(found->normal, expected->normal, sizeof found->normal);
+    expect_same_point(found, expected, query);
 }
 
 TEST(distances_are_those_of_find_near) {
@@ -223,10 +234,10 @@ TEST(distances_are_those_of_find_near) {
             double distance = fmax(0x1p-300, shares[i % 3] * extent_of(i));
             assert_true(isfinite(nearest[i].distance));
             if (nearest[i].distance < 0x1p299)
-                expect_same_distance(&nearest[i], measure_pair(&r, i, 0x1p300));
+                expect_same_distance(&nearest[i], measure_pair(&r, i, 0x1p300), i);
             assert_int_equal(pairs_near_packed(r.context, &one, x0[4 * i], distance, other_nearest), CSCD_OK);
             const cscd_proximity *expected = measure_pair(&r, i, distance);
-            expect_same_distance(other_nearest, expected);
+            expect_same_distance(other_nearest, expected, i);
             near += expected != NULL;
         }
         print_message("  of %d: %zu near\n", QUERY_COUNT, near);

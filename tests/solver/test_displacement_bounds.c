@@ -38,7 +38,7 @@ static void load_points(const cscd_stencil *s, const double *x, points out) {
 }
 
 static cscd_stencil stencil_of(const rig *r, const cscd_proximity *p) {
-    return cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
+    return stencil_of_item(r->mesh, p);
 }
 
 static double in_scalar(double x, cscd_scalar scalar) {

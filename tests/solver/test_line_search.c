@@ -108,14 +108,15 @@ TEST(steps_are_certified) {
 /* Checks that line search and detector find the same pairs, bit for bit, at the positions of a length, and
  * that brute force agrees. */
 static size_t check_near(const step_search *s, const rig *other, const rig *brute, double length,
-                         double distance) {
+                         double distance, cscd_near_form form) {
     cscd_proximities on_line, by_trees, truth;
     expect_ok(line_positions_packed(s->line, length, moment));
     free_step_positions(&s->r, interval.x0, interval.x1, length, exact);
     assert_memory_equal(moment, exact, interval.vertex_count * sizeof(double[3]));
-    expect_ok(find_near_packed(other->detector, moment, distance, &by_trees));
-    expect_ok(find_near_packed(brute->detector, moment, distance, &truth));
-    expect_ok(cscd_line_search_find_near(s->line, length, distance, CSCD_NEAR_PAIRS, &on_line));
+    const cscd_view *at = CSCD_DOUBLES(moment, interval.vertex_count);
+    expect_ok(cscd_detector_find_near(other->detector, at, distance, form, &by_trees));
+    expect_ok(cscd_detector_find_near(brute->detector, at, distance, form, &truth));
+    expect_ok(cscd_line_search_find_near(s->line, length, distance, form, &on_line));
     assert_int_equal(on_line.count, by_trees.count);
     assert_int_equal(on_line.count, truth.count);
     assert_true(cscd_line_search_candidate_count(s->line) >= truth.count);
@@ -137,7 +138,8 @@ static size_t check_moments(const step_search *s, double reach, uint64_t seed) {
     for (int i = 0; i < 5; i++) {
         double length = i == 0 ? 0.0 : i == 1 ? 1.0 : i == 2 ? 0x1p-40 : stream_between(&random, 0.0, 1.0);
         double distance = i % 2 == 0 ? reach : reach * stream_between(&random, 0.01, 1.0);
-        pairs += check_near(s, &other, &brute, length, distance);
+        pairs += check_near(s, &other, &brute, length, distance, CSCD_NEAR_PAIRS);
+        pairs += check_near(s, &other, &brute, length, distance, CSCD_NEAR_BEYOND);
     }
     rig_destroy(&brute);
     rig_destroy(&other);
@@ -369,6 +371,13 @@ TEST(misuse_is_named) {
     expect_invalid(s.r.context, line_positions_packed(s.line, 0.5, NULL), "positions is NULL");
     assert_true(near.count == 4711 && step.fraction == -1.0);
     expect_ok(cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_PAIRS, &near));
+    expect_ok(cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_BEYOND, &near));
+    expect_ok(cscd_detector_set_separation(s.r.detector, 0.05, 0.0));
+    expect_ok(cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_PAIRS, &near));
+    expect_ok(cscd_line_search_find_near(s.line, 0.5, 0.05, CSCD_NEAR_BEYOND, &near));
+    expect_invalid(s.r.context, cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_BEYOND, &near),
+                   "min_separation is 0.05");
+    expect_ok(cscd_detector_set_separation(s.r.detector, 0.0, 0.0));
     begin_line(&s, interval.x0, interval.x1, 0.0);
     expect_invalid(s.r.context, cscd_line_search_find_near(s.line, 0.5, 0x1p-300, CSCD_NEAR_PAIRS, &near),
                    "reach of 0");

@@ -20,7 +20,7 @@ static double end[SCENE_VERTICES_MAX * 3];
 static bool stays[SCENE_VERTICES_MAX]; /* a pair at x0 holds the vertex */
 
 static cscd_stencil stencil_of(const rig *r, const cscd_proximity *p) {
-    return cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
+    return stencil_of_item(r->mesh, p);
 }
 
 static void load_points(const cscd_stencil *s, const double *x, points out) {

@@ -112,7 +112,8 @@ TEST(parallel_edges_stay_an_item) {
             double factor = mollifier_of(p, moment.x0);
             assert_true(fabs(p->threshold - 1e-3 * 4.0 * 4.0) <= 1e-15);
             least = fmin(least, factor);
-            at_ends += factor < 1.0 && (p->u == 0.0 || p->u == 1.0 || p->v == 0.0 || p->v == 1.0);
+            at_ends += factor < 1.0 &&
+                       (p->weights[0] * p->weights[1] == 0.0 || p->weights[2] * p->weights[3] == 0.0);
         }
         if (before >= 0.0) largest = fmax(largest, fabs(energy - before));
         before = energy;

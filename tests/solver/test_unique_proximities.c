@@ -1,5 +1,6 @@
 /* Proximities without repetitions: merged as brute force over the list of pairs merges them, with the same energy. */
 #include "cscd/cscd.h"
+#include "src/mesh/mesh.h"
 #include "tests/support/calls.h"
 #include "tests/support/random.h"
 #include "tests/support/solver/solver_rig.h"
@@ -23,6 +24,7 @@ typedef struct parts {
     uint32_t side[2][3];
     int size[2];
     uint32_t vf, ee;
+    double weight;
 } parts;
 
 static int vertices_of_first(const cscd_proximity *p) {
@@ -53,7 +55,7 @@ static int compare_parts(const void *left, const void *right) {
 
 /* The smaller side comes first, and a side of one vertex for two features. whole: all vertices count. */
 static parts parts_of(const cscd_proximity *p, bool whole) {
-    parts of = {.vf = p->vf_count, .ee = p->ee_count};
+    parts of = {.vf = p->vf_count, .ee = p->ee_count, .weight = p->weight};
     for (int i = 0; i < 4; i++) {
         int s = i < vertices_of_first(p) ? 0 : 1;
         if (whole || p->weights[i] != 0.0) of.side[s][of.size[s]++] = p->vertices[i];
@@ -78,6 +80,7 @@ static size_t merge_parts(parts *all, size_t count) {
         if (kept > 0 && compare_parts(&all[kept - 1], &all[i]) == 0) {
             all[kept - 1].vf += all[i].vf;
             all[kept - 1].ee += all[i].ee;
+            all[kept - 1].weight += all[i].weight;
         } else {
             all[kept++] = all[i];
         }
@@ -104,6 +107,7 @@ static void compare_with_merged_pairs(const item_list *pairs, const item_list *i
         assert_int_equal(compare_parts(&found[i], &expected[i]), 0);
         assert_int_equal(found[i].vf, expected[i].vf);
         assert_int_equal(found[i].ee, expected[i].ee);
+        assert_true(fabs(found[i].weight - expected[i].weight) <= 1e-14 * expected[i].weight);
     }
     free(expected);
     free(found);
@@ -127,12 +131,15 @@ static long double extent_of(const cscd_proximity *p, const double *x) {
 
 /* Compares distance, normal and point with the sums that vertices and weights stand for. */
 static void check_item(const rig *r, const cscd_proximity *p, const double *x) {
-    cscd_stencil s = cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
+    cscd_stencil s = stencil_of_item(r->mesh, p);
     long double rounding = 0x1p-48L * extent_of(p, x), square = 0.0L;
     assert_memory_equal(s.vertices, p->vertices, sizeof s.vertices);
     assert_memory_equal(s.weights, p->weights, sizeof s.weights);
     assert_int_equal(p->count, p->vf_count + p->ee_count);
-    assert_true(p->count > 0 && p->u >= 0.0 && p->u <= 1.0 && p->v >= 0.0 && p->v <= 1.0);
+    double u, v, point[3];
+    cscd_stencil_parameters(p->kind, p->weights, &u, &v);
+    cscd_proximity_point(p, x, point);
+    assert_true(p->count > 0 && u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0);
     for (uint32_t k = 0; k < 3; k++) {
         long double apart = 0.0L, middle = 0.0L, largest = 0.0L, origin = x[p->vertices[0] * 3 + k];
         for (int i = 0; i < 4; i++) {
@@ -142,7 +149,7 @@ static void check_item(const rig *r, const cscd_proximity *p, const double *x) {
             largest = fmaxl(largest, fabsl(coordinate));
         }
         square += apart * apart;
-        assert_true(fabsl(middle - p->point[k]) <= rounding + 0x1p-50L * largest);
+        assert_true(fabsl(middle - point[k]) <= rounding + 0x1p-50L * largest);
         if (p->distance > 1e4L * rounding)
             assert_true(fabsl(apart - p->distance * p->normal[k]) <= 8.0L * rounding);
     }
@@ -183,6 +190,58 @@ static void compare_forms(const rig *r, const double *x, double distance, form_t
     free(items.items);
 }
 
+/* ---- weights --------------------------------------------------------------------------------------------- */
+
+/* A third of the areas at rest of the triangles that have this vertex, or, with another one, this edge. */
+static long double area_around(const rig *r, uint32_t vertex, uint32_t other) {
+    long double sum = 0.0L;
+    for (uint32_t t = 0; t < r->mesh->triangle_count; t++) {
+        const uint32_t *corners = r->mesh->triangles[t];
+        long double u[3], v[3], squares = 0.0L;
+        int found = 0;
+        for (int i = 0; i < 3; i++) found += corners[i] == vertex || corners[i] == other;
+        if (found != (vertex == other ? 1 : 2)) continue;
+        for (uint32_t k = 0; k < 3; k++) {
+            u[k] = (long double)at_rest.x0[corners[1] * 3 + k] - at_rest.x0[corners[0] * 3 + k];
+            v[k] = (long double)at_rest.x0[corners[2] * 3 + k] - at_rest.x0[corners[0] * 3 + k];
+        }
+        for (int k = 0; k < 3; k++) {
+            long double across = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+            squares += across * across;
+        }
+        sum += 0.5L * sqrtl(squares) / 3.0L;
+    }
+    return sum;
+}
+
+static double weight_of(const rig *r, const cscd_proximity *p) {
+    if (p->kind == CSCD_CONTACT_VF) return (double)(0.25L * area_around(r, p->a, p->a));
+    const uint32_t *v = p->vertices;
+    return (double)(0.25L * (area_around(r, v[0], v[1]) + area_around(r, v[2], v[3])));
+}
+
+/* Every pair has the weight of its features, and both forms have the same sum of weight times energy. */
+static void compare_weights(const rig *r, double distance) {
+    item_list pairs = find_items(r, at_rest.x1, distance, CSCD_NEAR_PAIRS),
+              items = find_items(r, at_rest.x1, distance, CSCD_NEAR_UNIQUE);
+    double expected = 0.0, found = 0.0;
+    for (size_t i = 0; i < pairs.count; i++) {
+        const cscd_proximity *p = &pairs.items[i];
+        double weight = weight_of(r, p);
+        assert_true(fabs(p->weight - weight) <= 1e-12 * weight + 1e-15 && p->separation == 0.0);
+        expected += p->weight * mollifier_of(p, at_rest.x1) * exp(-p->distance);
+    }
+    for (size_t i = 0; i < items.count; i++) {
+        const cscd_proximity *p = &items.items[i];
+        found += p->weight * mollifier_of(p, at_rest.x1) * exp(-p->distance);
+    }
+    assert_true(fabs(found - expected) <= 1e-12 * expected);
+    free(pairs.items);
+    free(items.items);
+}
+
+/* ---- all of it ------------------------------------------------------------------------------------------- */
+
 TEST(items_stand_for_all_pairs) {
     form_tally t = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -193,6 +252,7 @@ TEST(items_stand_for_all_pairs) {
             compare_forms(&r, at_rest.x1, distance, &t);
             set_rest(&r, at_rest.x0);
             compare_forms(&r, at_rest.x1, distance, &t);
+            compare_weights(&r, distance);
             rig_destroy(&r);
         }
     }
@@ -251,9 +311,11 @@ TEST(same_when_scaled) {
         for (size_t i = 0; i < found.count; i++) {
             const cscd_proximity *p = &found.items[i], *t = &expected.items[i];
             assert_int_equal(compare_names(p, t), 0);
-            assert_true(p->u == t->u && p->v == t->v && p->vf_count == t->vf_count &&
-                        p->ee_count == t->ee_count && p->distance == ldexp(t->distance, exponent));
+            assert_memory_equal(p->weights, t->weights, sizeof p->weights);
+            assert_true(p->vf_count == t->vf_count && p->ee_count == t->ee_count &&
+                        p->distance == ldexp(t->distance, exponent));
             assert_true(p->threshold == ldexp(t->threshold, 4 * exponent));
+            assert_true(p->weight == ldexp(t->weight, 2 * exponent));
         }
         free(expected.items);
         free(found.items);
@@ -279,8 +341,8 @@ TEST(arguments_are_checked) {
     rig r = near_rig(&at_rest, 1);
     expect_invalid(r.context,
                    cscd_detector_find_near(r.detector, CSCD_DOUBLES(at_rest.x0, at_rest.vertex_count), 0.1,
-                                           (cscd_near_form)2, &out),
-                   "form 2");
+                                           (cscd_near_form)4, &out),
+                   "form 4");
     assert_true(out.items == NULL && out.count == 4711);
     assert_int_equal(set_rest_packed(NULL, at_rest.x0), CSCD_NULL_OBJECT);
     assert_int_equal(count_mollified(&r), 0);

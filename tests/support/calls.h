@@ -46,6 +46,20 @@ cscd_status pairs_near_packed(cscd_context *context, const cscd_pairs *pairs, co
 
 /* ---- refusals ------------------------------------------------------------------------------------------ */
 
+/* The stencil that kind, a, b and the weights of an item stand for. */
+static inline cscd_stencil stencil_of_item(const cscd_mesh *mesh, const cscd_proximity *p) {
+    double u, v;
+    cscd_stencil_parameters(p->kind, p->weights, &u, &v);
+    return cscd_mesh_stencil(mesh, p->kind, p->a, p->b, u, v);
+}
+
+/* Two items are alike in every bit, but for what the rules of one detector make them keep. */
+static inline void expect_alike_but_separation(const cscd_proximity *found, const cscd_proximity *expected) {
+    cscd_proximity alike = *found;
+    alike.separation = expected->separation;
+    assert_memory_equal(&alike, expected, sizeof alike);
+}
+
 /* The call in this context was refused as INVALID_ARGUMENT, and its sentence has these words. */
 static inline void expect_invalid(const cscd_context *context, cscd_status status, const char *words) {
     const char *detail = cscd_context_detail(context);

@@ -30,8 +30,8 @@ typedef struct energy_case {
 } energy_case;
 
 /* The numbers by which an item counts. */
-#define CASE_WEIGHT(c)     ((c)->item.count)
-#define CASE_SEPARATION(c) 0.0
+#define CASE_WEIGHT(c)     ((c)->item.weight)
+#define CASE_SEPARATION(c) ((c)->item.separation)
 
 /* Makes a random pair of the shape, about `distance` apart, with edges about as long as 1. */
 energy_case energy_case_make(random_stream *random, pair_shape shape, double distance);

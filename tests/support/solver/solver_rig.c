@@ -148,7 +148,9 @@ static void check_pairs_at_end(const rig *reference, const free_step_call *call,
         if (p->distance > distance * (1.0 - a_little)) continue;
         assert_non_null(was);
         double floor = rung * fmin(distance, was->distance) * (1.0 - a_little);
-        if (floor > finest * vec3_largest(p->point)) assert_true(p->distance > floor);
+        double point[3];
+        cscd_proximity_point(p, call->end, point);
+        if (floor > finest * vec3_largest(point)) assert_true(p->distance > floor);
     }
     free(after.items);
 }
