@@ -25,8 +25,7 @@ extern "C" {
  * Items may also be your own. Of each, kind, vertices, weights, weight, separation, threshold and count are
  * read, and of VH the normal. On the border of a feature some weights are exactly 0 (cscd_stencil). */
 
-/* An energy of a distance d, of which r is the reach and s the item's separation (Li et al. 2021, Codimensional
- * IPC). It is 0 from s + r on; below, with g = d - s:
+/* An energy of a distance d, of which r is the reach and s a distance to keep (cscd_energy_options). It is 0 from s + r on; below, with g = d - s:
  *   BARRIER          -(g - r)^2 ln(g / r): Li et al. 2020, eq. 6; a squared length, infinite at s
  *   BARRIER_SQUARED  the same of d^2 - s^2 and (s + r)^2 - s^2, as in their programs and in IPC Toolkit; the
  *                    fourth power of a length, infinite at s
@@ -54,7 +53,8 @@ typedef struct cscd_energy_options {
     bool physical;
 
     bool by_count;       /* an item weighs its count (Li et al. 2020); false, the default: its weight */
-    uint8_t reserved[6]; /* 0 */
+    bool beyond;         /* for lists of CSCD_NEAR_BEYOND: s is the item's separation; else, by default, 0 */
+    uint8_t reserved[5]; /* 0 */
 
     /* For cscd_energy_freeze_friction: a coefficient for all pairs, 0 by default; or one for each object, of
      * which a pair has the geometric mean; or one for each item. The last array that is not NULL counts. */

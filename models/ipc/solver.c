@@ -58,6 +58,7 @@ cscd_status ipc_solver_barrier(const ipc_solver *p, const double *positions, con
     cscd_energy_options options = cscd_energy_defaults();
     options.reach = p->scene->barrier.reach;
     options.stiffness = p->scene->barrier.stiffness;
+    options.by_count = true;
     return cscd_energy_evaluate(p->barrier, near, CSCD_DOUBLES(positions, p->shape.vertex_count), &options,
                                 targets, out);
 }

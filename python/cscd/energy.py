@@ -55,6 +55,8 @@ class Energy:
         The law is made a length, so that with areas as weights the stiffness is a pressure.
     by_count : bool
         A pair weighs its ``count``, whatever weight it has.
+    beyond : bool
+        Distances count beyond each pair's separation, for lists that were found so.
     friction : float or (objects,)
         A coefficient for all pairs, or one for each object, of which a pair has the geometric mean.
     slip : float
@@ -71,7 +73,7 @@ class Energy:
     """
 
     def __init__(self, mesh: Mesh, reach: float, law: str = "barrier", *, stiffness: float = 1.0,
-                 physical: bool = False, by_count: bool = False, friction: Any = 0.0, slip: float = 0.0, threads: int = 1,
+                 physical: bool = False, by_count: bool = False, beyond: bool = False, friction: Any = 0.0, slip: float = 0.0, threads: int = 1,
                  simd: str = "auto") -> None:
         if law not in _LAWS:
             raise ValueError(f"law: expected one of {', '.join(_LAWS)}; got {law!r}")
@@ -80,6 +82,7 @@ class Energy:
         library.cscd_energy_defaults_sized(address_of(self._options), self._options.nbytes)
         self._options["law"] = VALUES[f"CSCD_ENERGY_{law.upper()}"]
         self._options["physical"], self._options["by_count"] = bool(physical), bool(by_count)
+        self._options["beyond"] = bool(beyond)
         for name, value in (("reach", reach), ("stiffness", stiffness), ("slip", slip)):
             self._options[name] = number_of(name, value)
         self._friction = self._set_friction(friction)
@@ -133,16 +136,14 @@ class Energy:
             return self._sum(call, lists, len(items), gradient, hessian, project)
 
     def at(self, detector: Detector, x: Any) -> Tuple[Any, Array]:
-        """The value and the gradient at ``x`` (n, 3), whose near pairs a detector finds; or of a batch (b, n, 3).
-
-        The pairs are those within the reach, so without separations.
-        """
+        """The value and the gradient at ``x`` (n, 3), whose near pairs a detector finds; or of a batch (b, n, 3)."""
         array = np.asarray(x)
         if array.ndim == 3:
             parts = [self.at(detector, one) for one in array]
             return (np.array([value for value, _ in parts]),
                     np.array([gradient for _, gradient in parts]).reshape(array.shape))
-        found = self.evaluate(x, detector.near(x, float(self._options["reach"][0]), unique=True))
+        found = self.evaluate(x, detector.near(x, float(self._options["reach"][0]), unique=True,
+                                               beyond=bool(self._options["beyond"][0])))
         return found.value, found.gradient
 
     def freeze_friction(self, x: Any, near: Any) -> None:

@@ -227,8 +227,9 @@ FIELDS(pair_distance, FIELD(cscd_pair_distance, distance), FIELD(cscd_pair_dista
 FIELDS(energy_options, FIELD(cscd_energy_options, struct_size), FIELD(cscd_energy_options, law),
        FIELD(cscd_energy_options, reach), FIELD(cscd_energy_options, stiffness),
        FIELD(cscd_energy_options, physical), FIELD(cscd_energy_options, by_count),
-       FIELD(cscd_energy_options, friction), FIELD(cscd_energy_options, object_friction),
-       FIELD(cscd_energy_options, item_friction), FIELD(cscd_energy_options, slip))
+       FIELD(cscd_energy_options, beyond), FIELD(cscd_energy_options, friction),
+       FIELD(cscd_energy_options, object_friction), FIELD(cscd_energy_options, item_friction),
+       FIELD(cscd_energy_options, slip))
 FIELDS(energy_pattern, FIELD(cscd_energy_pattern, rows), FIELD(cscd_energy_pattern, columns),
        FIELD(cscd_energy_pattern, block_count))
 FIELDS(energy_targets, WRITTEN_FIELD(cscd_energy_targets, gradient),

@@ -46,12 +46,17 @@ static inline int energy_vertices_of(cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_EV ? 3 : 4;
 }
 
-/* The factor of a pair that pair lists give it, and the distance that it is to keep. */
+/* The factor of an item, and the distance that it is to keep. */
 static inline double energy_weight_of(const cscd_energy_options *options, const cscd_proximity *item) {
     return options->by_count ? item->count : item->weight;
 }
+<<<<<<< Updated upstream
 static inline double energy_separation_of(const cscd_proximity *item) {
     return item->separation;
+=======
+static inline double energy_separation_of(const cscd_energy_options *options, const cscd_proximity *item) {
+    return options->beyond ? item->separation : 0.0;
+>>>>>>> Stashed changes
 }
 
 /* The energy of one item, and the derivatives that are wanted. */
@@ -80,7 +85,7 @@ typedef struct symmetric_matrix {
     double m[SYMMETRIC_MAX][SYMMETRIC_MAX];
 } symmetric_matrix;
 
-/* Makes the matrix diagonal by Jacobi's rotations, and writes its eigenvectors to the columns of `vectors`. */
+/* Makes the matrix diagonal, and writes the eigenvectors to the rows of `vectors`. Only the diagonal is left of the matrix. */
 void symmetric_diagonalize(symmetric_matrix *a, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]);
 
 /* A diagonal matrix plus factor >= 0 times the square of a vector of length 1. At most two numbers of the diagonal are negative,

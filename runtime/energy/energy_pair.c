@@ -262,7 +262,7 @@ static void project_nine(double (*hessian)[12]) {
         if (!(m.m[e][e] > 0.0)) continue;
         double y[12] = {0.0};
         for (int i = 0; i < 9; i++) {
-            for (int l = 0; l < 4; l++) y[3 * l + i % 3] += vectors[i][e] * edge_basis[i / 3][l];
+            for (int l = 0; l < 4; l++) y[3 * l + i % 3] += vectors[e][i] * edge_basis[i / 3][l];
         }
         for (int i = 0; i < 12; i++) {
             for (int j = 0; j <= i; j++) hessian[i][j] += m.m[e][e] * y[i] * y[j];
@@ -298,7 +298,7 @@ static void mollify_term(const edge_mollifier *m, const energy_curve *c, const p
 
 static energy_curve curve_of_item(const cscd_energy_options *options, const cscd_proximity *item,
                                   const pair_frame *f) {
-    energy_curve c = energy_law_at(options, f->distance, energy_separation_of(item));
+    energy_curve c = energy_law_at(options, f->distance, energy_separation_of(options, item));
     double factor = options->stiffness * energy_weight_of(options, item);
     if (c.value == INFINITY || factor == 0.0) return (energy_curve){factor > 0.0 ? INFINITY : 0.0, 0.0, 0.0};
     return (energy_curve){factor * c.value, factor * c.slope, factor * c.curvature};
@@ -315,7 +315,7 @@ void energy_pair_evaluate(const cscd_energy_options *options, const cscd_proximi
     edge_mollifier m;
     pair_frame_find(item, x, &f);
     energy_curve c = curve_of_item(options, item, &f);
-    term->gap = f.distance - energy_separation_of(item);
+    term->gap = f.distance - energy_separation_of(options, item);
     term->value = c.value;
     clear_derivatives(term);
     if (c.value == 0.0 || c.value == INFINITY) return;

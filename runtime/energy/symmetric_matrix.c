@@ -5,26 +5,7 @@
 
 #include <math.h>
 
-/* Turns the rows and columns p < q by the angle that makes their entry 0 (Rutishauser 1966). */
-static void rotate_pair(symmetric_matrix *a, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX], int p, int q) {
-    double entry = a->m[p][q], difference = a->m[q][q] - a->m[p][p];
-    if (entry == 0.0) return;
-    double tangent = 2.0 * entry / (fabs(difference) + sqrt(difference * difference + 4.0 * entry * entry));
-    if (difference < 0.0) tangent = -tangent;
-    double cosine = 1.0 / sqrt(1.0 + tangent * tangent), sine = tangent * cosine;
-    a->m[p][p] -= tangent * entry;
-    a->m[q][q] += tangent * entry;
-    a->m[p][q] = a->m[q][p] = 0.0;
-    for (int i = 0; i < a->size; i++) {
-        double vp = vectors[i][p], vq = vectors[i][q];
-        vectors[i][p] = cosine * vp - sine * vq;
-        vectors[i][q] = sine * vp + cosine * vq;
-        if (i == p || i == q) continue;
-        double ap = a->m[i][p], aq = a->m[i][q];
-        a->m[i][p] = a->m[p][i] = cosine * ap - sine * aq;
-        a->m[i][q] = a->m[q][i] = sine * ap + cosine * aq;
-    }
-}
+/* ---- by reflections and rotations ---------------------------------------------------------------------- */
 
 static double largest_entry(const symmetric_matrix *a) {
     double largest = 0.0;
@@ -34,33 +15,110 @@ static double largest_entry(const symmetric_matrix *a) {
     return largest;
 }
 
-static double largest_aside(const symmetric_matrix *a) {
-    double largest = 0.0;
-    for (int i = 0; i < a->size; i++) {
-        for (int j = 0; j < i; j++) largest = max_of(largest, fabs(a->m[i][j]));
+/* A matrix with entries on the diagonal, and beside[i] between i and i + 1. */
+typedef struct tridiagonal_matrix {
+    double diagonal[SYMMETRIC_MAX], beside[SYMMETRIC_MAX];
+} tridiagonal_matrix;
+
+/* Reflects all behind `k` onto the axis k + 1, so that row k has one entry beside the diagonal (Householder 1958). Reflections of
+ * `vectors` are those of their columns. */
+static double reflect_row(symmetric_matrix *a, int k, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]) {
+    const int n = a->size;
+    double u[SYMMETRIC_MAX], image[SYMMETRIC_MAX] = {0.0}, square = 0.0, half = 0.0;
+    for (int i = k + 1; i < n; i++) {
+        u[i] = a->m[i][k];
+        square += u[i] * u[i];
     }
-    return largest;
+    const double entry = u[k + 1], length = entry < 0.0 ? sqrt(square) : -sqrt(square);
+    if (square - entry * entry <= 0.0) return entry;
+    u[k + 1] -= length;
+    const double factor = 1.0 / (square - entry * length); /* 2 / u^2 */
+    for (int i = k + 1; i < n; i++) {
+        for (int j = k + 1; j < n; j++) image[i] += a->m[i][j] * u[j];
+        image[i] *= factor;
+        half += 0.5 * factor * image[i] * u[i];
+    }
+    for (int i = k + 1; i < n; i++) image[i] -= half * u[i];
+    for (int i = k + 1; i < n; i++) {
+        for (int j = k + 1; j < n; j++) a->m[i][j] -= u[i] * image[j] + image[i] * u[j];
+    }
+    double along[SYMMETRIC_MAX] = {0.0};
+    for (int i = k + 1; i < n; i++) {
+        for (int j = 0; j < n; j++) along[j] += factor * u[i] * vectors[i][j];
+    }
+    for (int i = k + 1; i < n; i++) {
+        for (int j = 0; j < n; j++) vectors[i][j] -= u[i] * along[j];
+    }
+    return length;
 }
 
-/* Sweeps converge quadratically: matrices of nine rows need five or six. */
-enum { SWEEPS_MOST = 30 };
+static void rotate_vectors(int size, double first[], double second[], double cosine, double sine) {
+    for (int k = 0; k < size; k++) {
+        const double kept = second[k];
+        second[k] = sine * first[k] + cosine * kept;
+        first[k] = cosine * first[k] - sine * kept;
+    }
+}
+
+/* One sweep of rotations from `last` up to `first`, shifted by an eigenvalue of the first two rows (Wilkinson's QL, as in Bowdler,
+ * Martin, Reinsch, Wilkinson 1968). */
+static void sweep_up(tridiagonal_matrix *t, int size, int first, int last,
+                     double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]) {
+    double *d = t->diagonal, *e = t->beside;
+    double half = (d[first + 1] - d[first]) / (2.0 * e[first]), root = sqrt(half * half + 1.0);
+    double g = d[last] - d[first] + e[first] / (half + (half < 0.0 ? -root : root));
+    double sine = 1.0, cosine = 1.0, shift = 0.0;
+    for (int i = last - 1; i >= first; i--) {
+        const double f = sine * e[i], b = cosine * e[i], length = sqrt(f * f + g * g);
+        e[i + 1] = length;
+        if (length == 0.0) {
+            d[i + 1] -= shift;
+            e[last] = 0.0;
+            return;
+        }
+        sine = f / length;
+        cosine = g / length;
+        const double left = d[i + 1] - shift, turned = (d[i] - left) * sine + 2.0 * cosine * b;
+        shift = sine * turned;
+        d[i + 1] = left + shift;
+        g = cosine * turned - b;
+        rotate_vectors(size, vectors[i], vectors[i + 1], cosine, sine);
+    }
+    d[first] -= shift;
+    e[first] = g;
+    e[last] = 0.0;
+}
+
+enum { SWEEPS_MOST = 60 };
 
 void symmetric_diagonalize(symmetric_matrix *a, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]) {
-    for (int i = 0; i < a->size; i++) {
-        for (int j = 0; j < a->size; j++) vectors[i][j] = i == j;
+    const int n = a->size;
+    tridiagonal_matrix t;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) vectors[i][j] = i == j;
     }
     double scale = largest_entry(a);
     if (!(scale > 0.0 && scale < INFINITY)) return;
     double power = power_of_two(2 - exponent_of(scale)); /* of a finite number this is one, too */
-    for (int i = 0; i < a->size; i++) {
-        for (int j = 0; j < a->size; j++) a->m[i][j] *= power;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) a->m[i][j] *= power;
     }
-    for (int sweep = 0; sweep < SWEEPS_MOST && largest_aside(a) > 0x1p-53; sweep++) {
-        for (int p = 0; p < a->size; p++) {
-            for (int q = p + 1; q < a->size; q++) rotate_pair(a, vectors, p, q);
+    for (int k = 0; k + 2 < n; k++) t.beside[k] = reflect_row(a, k, vectors);
+    if (n > 1) t.beside[n - 2] = a->m[n - 1][n - 2];
+    t.beside[n - 1] = 0.0;
+    for (int i = 0; i < n; i++) t.diagonal[i] = a->m[i][i];
+    for (int first = 0; first < n; first++) {
+        for (int sweep = 0; sweep < SWEEPS_MOST; sweep++) {
+            int last = first;
+            while (last + 1 < n &&
+                   fabs(t.beside[last]) > 0x1p-53 * (fabs(t.diagonal[last]) + fabs(t.diagonal[last + 1])) &&
+                   fabs(t.beside[last]) > 0x1p-60)
+                last++;
+            if (last == first) break;
+            sweep_up(&t, n, first, last, vectors);
         }
     }
-    for (int i = 0; i < a->size; i++) a->m[i][i] /= power;
+    for (int i = 0; i < n; i++) a->m[i][i] = t.diagonal[i] / power;
 }
 
 /* ---- a diagonal plus a square ------------------------------------------------------------------------------ */

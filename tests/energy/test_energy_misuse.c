@@ -109,6 +109,8 @@ TEST(items_are_checked) {
     REFUSED("weights", w.item.weights[2] = -0.5);
     REFUSED("weights", w.item.kind = CSCD_CONTACT_EE);
     REFUSED("threshold", w.item.threshold = -1.0);
+    REFUSED("a weight below 0", w.item.weight = -1.0);
+    REFUSED("a separation below 0", w.item.separation = (double)NAN);
 }
 
 TEST(positions_are_checked) {

@@ -55,7 +55,12 @@ static pair_errors errors_of(const energy_case *c, long double step) {
 /* Cases of all laws, near and far within the reach, with half of the pairs of edges below the mollifier's threshold. */
 static energy_case make_any(random_stream *random, pair_shape shape) {
     double reach = exp(stream_between(random, -6.0, 0.0)), share = exp(stream_between(random, -5.0, -0.05));
-    energy_case c = energy_case_make(random, shape, share * reach);
+    bool beyond = stream_below(random, 2) == 1;
+    double keep = beyond ? stream_between(random, 0.0, 2.0) * reach : 0.0;
+    energy_case c = energy_case_make(random, shape, keep + share * reach);
+    c.options.beyond = beyond;
+    c.item.separation = beyond ? keep : 4711.0;
+    c.options.by_count = stream_below(random, 2) == 1;
     c.options.reach = reach;
     c.options.law = stream_below(random, 4);
     c.options.physical = stream_below(random, 2) == 1;
@@ -73,8 +78,8 @@ TEST(derivatives_are_those_of_the_formulas) {
             energy_case c = make_any(&random, shape);
             pair_frame f;
             pair_frame_find(&c.item, c.x, &f);
-            double d = fabs(f.distance), left = c.options.reach - d;
-            pair_errors e = errors_of(&c, 0.02L * fminl(d, left));
+            double gap = fabs(f.distance) - CASE_SEPARATION(&c), left = c.options.reach - gap;
+            pair_errors e = errors_of(&c, 0.02L * fminl(gap, left));
             most.value = fmax(most.value, e.value);
             most.gradient = fmax(most.gradient, e.gradient);
             most.hessian = fmax(most.hessian, e.hessian);
