@@ -128,11 +128,7 @@ static const char *fault_of_item(const cscd_mesh *mesh, const cscd_proximity *p)
     }
     if (!weights_fit(p)) return "has weights that are not those of its kind (cscd_stencil)";
     if (!is_amount(p->weight)) return "has a weight below 0 or without an end";
-<<<<<<< Updated upstream
-    if (!is_amount(energy_separation_of(p))) return "has a separation below 0 or without an end";
-=======
     if (!is_amount(p->separation)) return "has a separation below 0 or without an end";
->>>>>>> Stashed changes
     return p->threshold >= 0.0 ? NULL : "has a threshold below 0";
 }
 

@@ -50,13 +50,8 @@ static inline int energy_vertices_of(cscd_contact_kind kind) {
 static inline double energy_weight_of(const cscd_energy_options *options, const cscd_proximity *item) {
     return options->by_count ? item->count : item->weight;
 }
-<<<<<<< Updated upstream
-static inline double energy_separation_of(const cscd_proximity *item) {
-    return item->separation;
-=======
 static inline double energy_separation_of(const cscd_energy_options *options, const cscd_proximity *item) {
     return options->beyond ? item->separation : 0.0;
->>>>>>> Stashed changes
 }
 
 /* The energy of one item, and the derivatives that are wanted. */

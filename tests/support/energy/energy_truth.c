@@ -274,11 +274,7 @@ energy_case energy_case_make(random_stream *random, pair_shape shape, double dis
     c.options = cscd_energy_defaults();
     c.item.kind = kind_of_shape(shape);
     c.item.count = 1 + stream_below(random, 5);
-<<<<<<< Updated upstream
-    c.item.weight = stream_between(random, 0.1, 5.0);
-=======
     c.item.weight = stream_between(random, 0.1, 2.0);
->>>>>>> Stashed changes
     for (uint32_t i = 0; i < 4; i++) c.item.vertices[i] = i;
     for (int i = 0; i < 12; i++) c.x[i] = random_side(random);
     set_border(random, shape, &c);

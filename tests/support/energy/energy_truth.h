@@ -30,17 +30,11 @@ typedef struct energy_case {
 } energy_case;
 
 /* The numbers by which an item counts. */
-<<<<<<< Updated upstream
-#define CASE_WEIGHT(c)     ((c)->item.weight)
-#define CASE_SEPARATION(c) ((c)->item.separation)
-=======
 #define CASE_WEIGHT(c)     ((c)->options.by_count ? (c)->item.count : (c)->item.weight)
 #define CASE_SEPARATION(c) ((c)->options.beyond ? (c)->item.separation : 0.0)
-    >>>>>>> Stashed changes
 
-    /* Makes a random pair of the shape, about `distance` apart, with edges about as long as 1. */
-    energy_case
-    energy_case_make(random_stream *random, pair_shape shape, double distance);
+/* Makes a random pair of the shape, about `distance` apart, with edges about as long as 1. */
+energy_case energy_case_make(random_stream *random, pair_shape shape, double distance);
 
 /* The energy of a case at any positions, by the formula of its nearest features. */
 long double energy_truth(const energy_case *c, const long double x[12]);
