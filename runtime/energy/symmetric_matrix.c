@@ -24,13 +24,14 @@ typedef struct tridiagonal_matrix {
  * `vectors` are those of their columns. */
 static double reflect_row(symmetric_matrix *a, int k, double vectors[SYMMETRIC_MAX][SYMMETRIC_MAX]) {
     const int n = a->size;
-    double u[SYMMETRIC_MAX], image[SYMMETRIC_MAX] = {0.0}, square = 0.0, half = 0.0;
+    double u[SYMMETRIC_MAX], image[SYMMETRIC_MAX] = {0.0}, behind = 0.0, half = 0.0;
     for (int i = k + 1; i < n; i++) {
         u[i] = a->m[i][k];
-        square += u[i] * u[i];
+        if (i > k + 1) behind += u[i] * u[i];
     }
-    const double entry = u[k + 1], length = entry < 0.0 ? sqrt(square) : -sqrt(square);
-    if (square - entry * entry <= 0.0) return entry;
+    const double entry = u[k + 1], square = behind + entry * entry;
+    const double length = entry < 0.0 ? sqrt(square) : -sqrt(square);
+    if (behind == 0.0) return entry;
     u[k + 1] -= length;
     const double factor = 1.0 / (square - entry * length); /* 2 / u^2 */
     for (int i = k + 1; i < n; i++) {
