@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 import subprocess
@@ -24,7 +25,7 @@ import cscd
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGE = (ROOT / "docs" / "python" / "bridges.md").read_text(encoding="utf-8")
 BLOCKS: Dict[str, str] = dict(re.findall(r"^```python (\w+)\n(.*?)^```$", PAGE, re.M | re.S))
-TESTED = {"meshio", "pyvista", "torch", "trimesh", "vtk"}
+TESTED = {"autograd", "jax", "meshio", "pyvista", "torch", "trimesh", "vtk"}
 
 # Two boxes, of which the second one has a corner in the first.
 CORNERS = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)], float)
@@ -99,6 +100,73 @@ def test_torch() -> None:
         truth = cscd.self_intersections(V.astype(np.float32), TRIANGLES) if scalar == torch.float32 else TRUTH
         assert np.array_equal(names["intersecting"].numpy(), truth.faces)
         assert np.array_equal(names["depth"].numpy(), truth.depth.astype(names["depth"].numpy().dtype))
+
+
+APART = np.concatenate([CORNERS, CORNERS * [1.0, 0.9, 1.1] + [1.04, 0.11, 0.07]])
+
+
+def run_energy(name: str, **given: Any) -> Dict[str, Any]:
+    """Runs a block about energies of near pairs."""
+    names = {"cscd": cscd, "np": np, "reach": 0.1, "rest": APART, **given}
+    exec(compile(BLOCKS[name], f"bridges.md: {name}", "exec"), names)
+    return names
+
+
+def expect_gradient(value: Any, gradient: Any) -> None:
+    """The gradient at APART is that of differences."""
+    along = np.random.default_rng(1).normal(size=APART.shape)
+    slope = (value(APART + 1e-7 * along) - value(APART - 1e-7 * along)) / 2e-7
+    assert abs(slope - (gradient * along).sum()) < 1e-6 * abs(slope)
+
+
+def test_autograd() -> None:
+    x = torch.tensor(APART, requires_grad=True)
+    names = run_energy("autograd", torch=torch, x=x, faces=torch.tensor(TRIANGLES))
+    (3.0 * names["loss"]).backward()
+    call = names["NearEnergy"].apply
+    expect_gradient(lambda at: 3.0 * float(call(torch.tensor(at), names["energy"], names["detector"])), x.grad.numpy())
+    batch = torch.tensor(np.stack([APART, 0.99 * APART]), requires_grad=True)
+    values = call(batch, names["energy"], names["detector"])
+    (values * torch.tensor([3.0, 0.0])).sum().backward()
+    assert values.shape == (2,) and torch.equal(batch.grad[0], x.grad) and not batch.grad[1].any()
+
+
+class StandInForJax:
+    """What the block takes of JAX; calls are made at once."""
+
+    ShapeDtypeStruct = SimpleNamespace
+
+    def __getattr__(self, name: str) -> Any:
+        raise AssertionError(f"the stand-in has no {name}")
+
+    @staticmethod
+    def custom_vjp(function: Any, nondiff_argnums: Any) -> Any:
+        assert nondiff_argnums == (1, 2)
+
+        def call(*arguments: Any) -> Any:
+            return function(*arguments)
+        call.defvjp = lambda *rules: setattr(call, "rules", rules)  # type: ignore[attr-defined]
+        return call
+
+    @staticmethod
+    def pure_callback(function: Any, shapes: Any, x: Any) -> Any:
+        found = function(x)
+        assert [(part.shape, part.dtype) for part in found] == [shape for shape in shapes]
+        return found
+
+
+def test_jax_by_a_stand_in() -> None:
+    stand_in = StandInForJax()
+    stand_in.ShapeDtypeStruct = lambda shape, dtype: (shape, dtype)  # type: ignore[assignment, misc, return-value]
+    names = run_energy("jax", jax=stand_in, functools=functools)
+    detector = cscd.Detector(TRIANGLES)
+    detector.set_rest(APART)
+    energy = cscd.Energy(detector.mesh, 0.1, "quadratic")
+    forward, backward = names["near_energy"].rules
+    value, kept = forward(APART, energy, detector)
+    (gradient,) = backward(energy, detector, kept, np.asarray(3.0))
+    assert value == names["near_energy"](APART, energy, detector)
+    expect_gradient(lambda at: 3.0 * float(names["near_energy"](at, energy, detector)), gradient)
 
 
 def test_trimesh_by_a_stand_in() -> None:
