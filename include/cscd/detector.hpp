@@ -231,6 +231,15 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     cscd_truncation truncate(const positions &x0, const positions &x1, double search_radius) {
         return truncate_to(x0, x1, search_radius, nullptr);
     }
+    /* reached may be x1 or x0. */
+    cscd_safe_motion make_safe(const positions &x0, const positions &x1, const mutable_positions &reached,
+                               const cscd_response_options &options = cscd_response_defaults()) {
+        const cscd_view *from = covering(x0), *to = covering(x1);
+        const cscd_mutable_view *end = reached.covering(object_count());
+        cscd_safe_motion found{};
+        call([&] { return cscd_detector_make_safe(get(), from, to, &options, end, &found); });
+        return found;
+    }
 
     /* ---- of the last step */
 

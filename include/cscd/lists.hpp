@@ -91,12 +91,16 @@ inline span<const cscd_part_pair> parts(const cscd_intersections &found) noexcep
     return {found.parts->items, found.parts->count};
 }
 
-/* The lists beside bounds and truncations. */
+/* The lists beside bounds, truncations and safe motions. */
 inline span<const cscd_proximity> blocked_pairs(const cscd_displacement_bounds &bounds) noexcept {
     return {bounds.blocked, bounds.blocked_count};
 }
 inline span<const cscd_proximity> held_pairs(const cscd_truncation &truncation) noexcept {
     return {truncation.held, truncation.held_count};
+}
+
+inline span<const cscd_contact> held_pairs(const cscd_safe_motion &motion) noexcept {
+    return {motion.held, motion.held_count};
 }
 
 /* ---- stencils ------------------------------------------------------------------------------------------- */

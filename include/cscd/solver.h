@@ -244,6 +244,72 @@ CSCD_API cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_
                                             double search_radius, const cscd_mutable_view *reached,
                                             cscd_truncation *out);
 
+/* ---- a motion made safe ------------------------------------------------------------------------------ */
+
+/* The strongest means that a vertex needed to keep its motion free of contact. */
+typedef enum cscd_response {
+    CSCD_RESPONSE_FREE,      /* none: it went where it wanted */
+    CSCD_RESPONSE_STOPPED,   /* contacts took away what approaches, and friction some of what slides */
+    CSCD_RESPONSE_ZONE,      /* it moved with an impact zone */
+    CSCD_RESPONSE_TRUNCATED, /* planes shortened its motion */
+    CSCD_RESPONSE_HELD,      /* it stayed, because it touches something at x0 */
+    CSCD_RESPONSE_COUNT,
+    CSCD_RESPONSE_MAX_ENUM = 0x7fffffff
+} cscd_response;
+
+/* Options of cscd_detector_make_safe. The arrays are read during the call. */
+typedef struct cscd_response_options {
+    uint32_t struct_size; /* set by cscd_response_defaults */
+    uint32_t reserved;    /* 0 */
+    /* vertex_count finite numbers, 0 or more, in any unit; 0: the vertex goes where it wants. NULL, the
+     * default: 1 each. Obstacles, half-spaces and vertices that are not active count as 0 anyway. */
+    const double *inverse_masses;
+    /* Coulomb's coefficient for each object, 0 or more; two objects have the geometric mean. NULL, the
+     * default: no friction. */
+    const double *friction;
+} cscd_response_options;
+
+/* Returns the default options. */
+CSCD_API void cscd_response_defaults_sized(cscd_response_options *out, size_t size);
+static inline cscd_response_options cscd_response_defaults(void) {
+    cscd_response_options options;
+    cscd_response_defaults_sized(&options, sizeof options);
+    return options;
+}
+
+/* The findings of cscd_detector_make_safe. The lists live as cscd_proximities. */
+typedef struct cscd_safe_motion {
+    const uint8_t *responses;                      /* one cscd_response per vertex */
+    uint32_t response_counts[CSCD_RESPONSE_COUNT]; /* the numbers of vertices */
+    uint32_t rounds;                               /* searches: 1 if x1 was safe */
+    size_t pushed;                                 /* contacts on which an impulse acts */
+    /* The share of its motion that a vertex made, along it, from 0 to 1: the mean, and the least. Those of
+     * obstacles, and those that did not want to move, do not count. */
+    double mean_share, least_share;
+    double obstacle_share; /* the least by which an obstacle, as a whole, went; mostly 1 */
+    /* The pairs that touch at x0, sorted by (kind, a, b), with toi 0. Their vertices stay. */
+    const cscd_contact *held;
+    size_t held_count;
+    bool moved; /* some vertex is not where it was, bit for bit */
+} cscd_safe_motion;
+
+/* Finds a motion near the one from x0 to x1 that is certified free of contact and goes on moving, and writes
+ * its end to `reached`, which may be x1 or x0 itself, or NULL. A contact stops the approach of its points by
+ * impulses, which keep momentum, and Coulomb friction slows what slides. What this leaves after some rounds
+ * moves together in impact zones (Harmon et al. 2008), and planes truncate the rest, as in
+ * cscd_detector_truncate. Obstacles go where they want unless something is caught between them, and then stop
+ * as a whole. The vertices of a seam are shifted by the same.
+ *
+ * The certificate is that of cscd_detector_max_step, for the positions as stored: nothing touches on the
+ * motion but what is `held`, and no pair sinks below its floor (docs/solver/guarantees.md). A velocity follows from
+ * reached - x0. The result is the same for any number of threads. Timings and counters are those of the
+ * whole call. options: NULL for the defaults. INVALID_ARGUMENT also for the methods PUBLISHED and
+ * ICCD_PUBLISHED, where no vertex can move, and for doubles in x0 with floats in `reached`. CANCELLED: see
+ * cscd_progress. docs/solver/first-contact.md shows a call. */
+CSCD_API cscd_status cscd_detector_make_safe(cscd_detector *detector, const cscd_view *x0,
+                                             const cscd_view *x1, const cscd_response_options *options,
+                                             const cscd_mutable_view *reached, cscd_safe_motion *out);
+
 /* ---- a line search ----------------------------------------------------------------------------------- */
 
 /* One motion about which a solver asks many times (Li et al. 2020). All answers come from the candidates, the

@@ -20,13 +20,14 @@ from .pairs import pairs_near, pairs_step
 from .plan import ComparedPlan, Plan
 from .questions import contacts, intersections, is_self_intersecting, self_intersecting_faces, self_intersections
 from .replay import Frame, Replay, replay
-from .results import CONTACT_KINDS, INTERSECTION_KINDS, Contacts, Events, PairContacts, PairDistances, Proximities
+from .results import (CONTACT_KINDS, INTERSECTION_KINDS, RESPONSES, Contacts, Events, PairContacts, PairDistances,
+                      Proximities, SafeMotion)
 
 __version__: str = _library.cscd_version_string().decode()
 
-__all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Energy", "EnergySum", "Error",
-           "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
-           "LineSearch", "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan",
-           "Points", "Proximities", "Recording", "Replay", "Scene", "Wires", "__version__", "contacts",
+__all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Energy", "EnergySum",
+           "Error", "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
+           "LineSearch", "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan", "Points",
+           "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene", "Wires", "__version__", "contacts",
            "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay",
            "self_intersecting_faces", "self_intersections", "write_report"]

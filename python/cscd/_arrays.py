@@ -8,7 +8,7 @@ import numpy as np
 
 from ._library import address_of, structs
 
-__all__ = ["as_faces", "as_floats", "as_indices", "as_positions", "check_magnitudes",
+__all__ = ["as_faces", "as_floats", "as_indices", "as_numbers", "as_positions", "check_magnitudes",
            "count_of", "mutable_view", "number_of", "views_of"]
 
 Array = Any  # np.ndarray[Any, Any], said shorter
@@ -56,6 +56,17 @@ def as_floats(name: str, values: Any, what: str) -> Array:
                              "a double")
         return array.astype(np.float64)
     raise ValueError(f"{name}: expected {what}, got {describe(array)}")
+
+
+def as_numbers(name: str, values: Any, count: int) -> Optional[Array]:
+    """``count`` numbers as packed doubles; one number stands for all, and None stays None."""
+    if values is None:
+        return None
+    what = f"a number or an array ({count},)"
+    array = as_floats(name, values, what)
+    if array.shape not in ((), (count,)):
+        raise ValueError(f"{name}: expected {what}, got {describe(array)}")
+    return np.array(np.broadcast_to(array, count), np.float64, order="C")
 
 
 def as_positions(name: str, values: Any, vertex_count: Optional[int] = None) -> Array:

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple
 import numpy as np
 
 from ._api import VALUES
-from ._arrays import as_faces, count_of, mutable_view, number_of, views_of
+from ._arrays import as_faces, as_numbers, count_of, mutable_view, number_of, views_of
 from ._host import IN_CONTACT, Handle, Host, new_handle, raise_status
 from ._library import address_of, items_of, library, new_struct, structs
 from ._options import DetectorOptions, in_python
@@ -18,7 +18,7 @@ from .line_search import LineSearch
 from .live import LiveSettings
 from .mesh import Mesh
 from .plan import Plan
-from .results import Contacts, Proximities, copy_records, near_form
+from .results import RESPONSES, Contacts, Proximities, SafeMotion, copy_records, near_form
 
 __all__ = ["Detector"]
 
@@ -277,6 +277,46 @@ class Detector(LiveSettings):
                       number_of("search_radius", search_radius), address_of(target), address_of(found))
         names = ["fraction", "obstacle_fraction", "near_count", "moved", "shortened"]
         return reached, found[names].view(np.recarray)[0]
+
+    def make_safe(self, x0: Any, x1: Any, inverse_masses: Any = None, friction: Any = None,
+                  out: Optional[Array] = None) -> Tuple[Array, SafeMotion]:
+        """Finds a motion near the one from ``x0`` to ``x1`` that is certified free of contact and goes on moving.
+
+        Contacts stop what approaches, by impulses that keep momentum, with Coulomb friction; impact zones and planes take
+        what this leaves (include/cscd/solver.h). Returns the positions, and what it took.
+
+        Parameters
+        ----------
+        inverse_masses : (n,) floats, optional
+            0: the vertex goes where it wants, as obstacles do anyway. 1 each by default.
+        friction : (object_count,) floats or a number, optional
+            Coulomb's coefficient of each object; two objects have the geometric mean.
+
+        A point of one triangle falls onto another one, which is too heavy to move:
+
+        >>> x0 = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [.2, .2, 1], [.3, .2, 3], [.2, .3, 3]])
+        >>> x1 = x0.copy()
+        >>> x1[3:, 2] -= 2
+        >>> x, safe = Detector([[0, 1, 2], [3, 4, 5]], min_separation=0.01).make_safe(x0, x1, [0, 0, 0, 1, 1, 1])
+        >>> x[3:, 2].round(3).tolist(), [RESPONSES[i] for i in safe.responses]
+        ([0.015, 1.0, 1.0], ['free', 'free', 'free', 'stopped', 'free', 'free'])
+        """
+        start, kept0 = self._views("x0", x0)
+        end, kept1 = self._views("x1", x1)
+        reached = self._positions_for("out", out, kept0)
+        target = mutable_view(reached)
+        options = new_struct("response_options")
+        library.cscd_response_defaults_sized(address_of(options), options.nbytes)
+        kept = [as_numbers("inverse_masses", inverse_masses, self.mesh.vertex_count),
+                as_numbers("friction", friction, self.mesh.object_count)]
+        for name, numbers in zip(("inverse_masses", "friction"), kept):
+            options[name] = 0 if numbers is None else address_of(numbers)
+        found = new_struct("safe_motion")
+        host = self._host
+        with host.lock:
+            host.call(library.cscdpy_detector_make_safe, self._detector, address_of(start), address_of(end),
+                      address_of(options), address_of(target), address_of(found))
+            return reached, SafeMotion.of(found[0], self.mesh.vertex_count)
 
     def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
         """One motion for many questions; ``reach``: the largest distance for which ``near`` is called."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Tuple
+from typing import Any, List, NamedTuple, Tuple
 
 import numpy as np
 
 from ._api import VALUES
-from ._library import copy_items, library, records
+from ._library import copy_items, copy_list, library, records
 
-__all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairContacts", "PairDistances", "Proximities"]
+__all__ = ["CONTACT_KINDS", "Contacts", "Events", "INTERSECTION_KINDS", "PairContacts", "PairDistances", "Proximities",
+           "RESPONSES", "SafeMotion"]
 
 
 def names_of(enumeration: str) -> Tuple[str, ...]:
@@ -67,6 +68,47 @@ class Contacts(Records):
     @property
     def weights(self) -> Any:
         return _weights(self)
+
+
+#: What kept the motion of a vertex safe, by the codes of ``SafeMotion.responses``.
+RESPONSES = ("free", "stopped", "zone", "truncated", "held")
+
+
+class SafeMotion(NamedTuple):
+    """The findings of ``Detector.make_safe``.
+
+    Attributes
+    ----------
+    responses : (n,) uint8
+        The strongest means that each vertex needed, a code of ``RESPONSES``.
+    mean_share, least_share : float
+        The share of its motion that a vertex made, along it, from 0 to 1.
+    obstacle_share : float
+        The least by which an obstacle, as a whole, went; mostly 1.
+    rounds, pushed : int
+        How many searches it took (1 if ``x1`` was safe), and on how many contacts an impulse acts.
+    moved : bool
+        Some vertex is not where it was.
+    held : Contacts
+        The pairs that touch at ``x0``, whose vertices stay.
+    """
+
+    responses: Any
+    mean_share: float
+    least_share: float
+    obstacle_share: float
+    rounds: int
+    pushed: int
+    moved: bool
+    held: Contacts
+
+    @classmethod
+    def of(cls, found: Any, vertex_count: int) -> SafeMotion:
+        """Copies the findings out of the library."""
+        held: Contacts = copy_items(int(found["held"]), int(found["held_count"]), "contact").view(Contacts)
+        return cls(copy_list(int(found["responses"]), vertex_count, np.uint8), float(found["mean_share"]),
+                   float(found["least_share"]), float(found["obstacle_share"]), int(found["rounds"]),
+                   int(found["pushed"]), bool(found["moved"]), held)
 
 
 class Proximities(Records):

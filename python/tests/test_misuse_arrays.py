@@ -82,6 +82,8 @@ def calls_with_positions() -> List[Tuple[str, str, Call]]:
         ("bounds", "x", lambda x: detector.bounds(x, 0.1)),
         ("truncate 0", "x0", lambda x: detector.truncate(x, V, 0.1)),
         ("truncate 1", "x1", lambda x: detector.truncate(V, x, 0.1)),
+        ("make_safe 0", "x0", lambda x: detector.make_safe(x, V)),
+        ("make_safe 1", "x1", lambda x: detector.make_safe(V, x)),
         ("line_search 0", "x0", lambda x: line(x, V)),
         ("line_search 1", "x1", lambda x: line(V, x)),
         ("set_rest", "rest", lambda x: detector.set_rest("None" if x is None else x)),

@@ -88,7 +88,11 @@ def test_numbers() -> None:
               lambda: detector.set_seams([[0, 9]]), lambda: detector.set_ignored([[0, 9]])]
     for out in (V[:, :2].copy(), V[:-1].copy(), V.astype(int), np.asfortranarray(V.copy()), V.tolist(), "out",
                 np.broadcast_to(V[:1], V.shape)):
-        calls += [lambda o=out: detector.max_step(V, DOWN, out=o), lambda o=out: detector.truncate(V, DOWN, 0.5, out=o)]
+        calls += [lambda o=out: detector.max_step(V, DOWN, out=o), lambda o=out: detector.truncate(V, DOWN, 0.5, out=o),
+                  lambda o=out: detector.make_safe(V, DOWN, out=o)]
+    for numbers in (-1.0, [1.0], [np.nan] * len(V), [np.inf] * len(V), "heavy", [0.0] * len(V)):
+        calls += [lambda n=numbers: detector.make_safe(V, DOWN, inverse_masses=n)]
+    calls += [lambda: detector.make_safe(V, DOWN, friction=-0.1), lambda: detector.make_safe(V, DOWN, friction=[0.1, 0.2])]
     for call in calls:
         with pytest.raises((ValueError, TypeError)) as caught:
             call()

@@ -166,6 +166,9 @@ void detector_free(cscd_detector *d) {
     context_free(context, d->pair_scratch);
     context_free(context, d->vertex_scratch);
     context_free(context, d->scalars);
+    context_free(context, d->response.vertices);
+    context_free(context, d->response.stops);
+    context_free(context, d->response.held);
     context_free(context, d->seen);
     context_free(context, d);
 }

@@ -21,6 +21,13 @@ typedef struct detector_results {
     cscd_part_pairs part_pairs; /* what these have found last */
 } detector_results;
 
+/* Memory of cscd_detector_make_safe. */
+typedef struct response_memory {
+    void *vertices; /* per vertex and object */
+    void *stops, *held;
+    size_t stops_size, held_size; /* in bytes */
+} response_memory;
+
 struct cscd_detector {
     reference_count references; /* the caller, and line searches */
     cscd_context *context;
@@ -44,6 +51,7 @@ struct cscd_detector {
     size_t pair_scratch_size;
     void *vertex_scratch; /* of truncation, per vertex */
     cscd_scalar *scalars; /* of truncation, per object, of x0 and of what is reached */
+    response_memory response;
 };
 
 /* ---- life ---------------------------------------------------------------------------------------------- */
@@ -140,9 +148,16 @@ typedef struct step_outcome {
 /* Checks both arrays, and forgets what is known of triangles at other positions than x0. */
 cscd_status step_check_positions(cscd_detector *d, const double *x0, const double *x1);
 
+/* The rule by which pairs are contacts. */
+typedef enum step_rule {
+    STEP_WITHIN,      /* they come within their distance */
+    STEP_BELOW_FLOOR, /* they fall below their floor */
+    STEP_NEARLY /* they come within their distance; those that come within twice that may be listed, too: quicker */
+} step_rule;
+
 /* Finds the contacts between x0 and x1, both checked, that the mode promises, and fills in the guarantees. Then the
- * caller either takes the step or, only after a rehearsal, withdraws it. */
-cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
+ * caller either takes the step or, only with a rule other than STEP_WITHIN, withdraws it. */
+cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, step_rule rule,
                       step_outcome *out);
 
 /* The vertices have gone to the end of the interval found last: carries the states of its triangles over to there,

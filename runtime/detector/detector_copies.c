@@ -199,6 +199,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(reached_scalars);
     EXCHANGE(vertex_scratch);
     EXCHANGE(scalars);
+    EXCHANGE(response.vertices);
     EXCHANGE(results.timings);
     EXCHANGE(results.counters);
 }

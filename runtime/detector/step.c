@@ -438,17 +438,26 @@ static cscd_status answer_from_list(cscd_detector *d, const double *x0, const do
 
 /* ---- one interval, either way -------------------------------------------------------------------------- */
 
-cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
+static interval_search search_by_rule(cscd_detector *d, const double *x0, const double *x1, step_rule rule) {
+    if (rule == STEP_BELOW_FLOOR) return detector_search_floors(d, x0, x1);
+    interval_search search = config_search_begin(&d->config, &d->space, x0, x1);
+    if (rule == STEP_NEARLY) {
+        search.interval.tolerance = 1.0;
+        search.interval.limit.tolerance = search.interval.limit.distance;
+    }
+    return search;
+}
+
+cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, step_rule rule,
                       step_outcome *out) {
-    bool answered;
+    bool answered, rehearsal = rule != STEP_WITHIN;
     if (rehearsal) start_states_save(&d->known.starts);
     detector_find_collapsed(d, x0, x1);
     d->interval.leaves_collapsed = !rehearsal && d->known.collapsed.count > 0;
     cscd_status status = answer_from_list(d, x0, x1, out, &answered);
     if (status != CSCD_OK || answered) return status;
     step_work work = {.detector = d,
-                      .search = rehearsal ? detector_search_floors(d, x0, x1)
-                                          : config_search_begin(&d->config, &d->space, x0, x1),
+                      .search = search_by_rule(d, x0, x1, rule),
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
@@ -516,7 +525,7 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     detector_begin_call(d);
     const waiting_place waiting = detector_waiting_place(d);
     status = waiting_settle(&waiting, x0);
-    if (status == CSCD_OK) status = step_find(d, x0, x1, d->config.options.mode, false, &found);
+    if (status == CSCD_OK) status = step_find(d, x0, x1, d->config.options.mode, STEP_WITHIN, &found);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status == CSCD_LIST_TOO_LONG) {
         *out = found.contacts;

@@ -50,13 +50,14 @@ void tries_withdraw(tries *t) {
     t->any = false;
 }
 
-cscd_status tries_find(tries *t, const double *from, const double *to, cscd_mode mode, cscd_contacts *out) {
+cscd_status tries_find(tries *t, const double *from, const double *to, cscd_mode mode, step_rule rule,
+                       cscd_contacts *out) {
     step_outcome found;
     tries_withdraw(t);
     t->any = true;
     progress_part(&t->detector->context->progress, t->done, 0.5 + 0.5 * t->done);
     t->done = 0.5 + 0.5 * t->done;
-    cscd_status status = step_find(t->detector, from, to, mode, true, &found);
+    cscd_status status = step_find(t->detector, from, to, mode, rule, &found);
     if (status != CSCD_OK) return status;
     add_timings(&t->timings, &found.timings);
     add_counters(&t->counters, &found.counters);
@@ -77,7 +78,7 @@ void tries_end(const tries *t, double since) {
 }
 
 static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
-    return tries_find(of, from, to, CSCD_MODE_EARLIEST, out);
+    return tries_find(of, from, to, CSCD_MODE_EARLIEST, STEP_BELOW_FLOOR, out);
 }
 
 cscd_status certified_check_method(const cscd_detector *d, const char *function) {

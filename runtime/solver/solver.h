@@ -59,9 +59,9 @@ typedef struct tries {
     double done; /* estimated share of the call: each try takes half of what is left */
 } tries;
 
-/* Finds what falls below its floor between two moments. Withdraws the previous try first, because the vertices did not go to
- * its end. */
-cscd_status tries_find(tries *t, const double *from, const double *to, cscd_mode mode, cscd_contacts *out);
+/* Finds the contacts between two moments. Withdraws the previous try first, because the vertices did not go to its end. */
+cscd_status tries_find(tries *t, const double *from, const double *to, cscd_mode mode, step_rule rule,
+                       cscd_contacts *out);
 
 void tries_withdraw(tries *t);
 

@@ -16,4 +16,5 @@
 #define LEAST_cscd_plan_options         STRUCT_THROUGH(cscd_plan_options, growing)
 #define LEAST_cscd_plan_parts           STRUCT_THROUGH(cscd_plan_parts, origin)
 #define LEAST_cscd_sensor_options       STRUCT_THROUGH(cscd_sensor_options, seed)
+#define LEAST_cscd_response_options     STRUCT_THROUGH(cscd_response_options, friction)
 #define LEAST_cscd_intersection_options STRUCT_THROUGH(cscd_intersection_options, max_work)

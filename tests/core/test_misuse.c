@@ -210,6 +210,7 @@ TEST(objects_that_are_null) {
     cscd_free_step step;
     cscd_displacement_bounds bounds;
     cscd_truncation truncation;
+    cscd_safe_motion safe;
     EXPECT_NO_DETECTOR(method, (cscd_method)99, "unknown method 99");
     cscd_object_desc marked = cscd_object_of_triangles(VERTICES, 8, triangles);
     marked.reserved[3] = 1;
@@ -238,6 +239,7 @@ TEST(objects_that_are_null) {
     expect_null_object(
         cscd_detector_displacement_bounds(NULL, AT_START, 1.0, CSCD_SCALAR_DOUBLE, NULL, 0, &bounds));
     expect_null_object(cscd_detector_truncate(NULL, AT_START, AT_END, 1.0, NULL, &truncation));
+    expect_null_object(cscd_detector_make_safe(NULL, AT_START, AT_END, NULL, NULL, &safe));
     expect_null_object(cscd_pairs_step(NULL, NULL, AT_START, AT_END, 0.0, 0.0, NULL));
     expect_null_object(cscd_pairs_find_near(NULL, NULL, AT_START, 1.0, NULL));
     expect_null_object(cscd_line_search_create(NULL, &no_search));

@@ -314,6 +314,11 @@ TEST(motions) {
     assert_true(reached == expected && cut.shortened > 0);
     assert_int_equal(t.ours.truncate(t.x0, t.x1, 1.0).shortened, cut.shortened);
     assert_int_equal(cscd::held_pairs(cut).size(), 0);
+    cscd_safe_motion safe;
+    assert_int_equal(cscd_detector_make_safe(t.c, &t.v0, &t.v1, nullptr, &out, &safe), CSCD_OK);
+    assert_true(t.ours.make_safe(t.x0, t.x1, reached).mean_share == safe.mean_share);
+    assert_true(reached == expected && safe.rounds > 1);
+    assert_int_equal(cscd::held_pairs(safe).size(), 0);
 }
 
 TEST(bounds) {

@@ -78,6 +78,23 @@ static void read_truncation(proof *p) {
     read_reached(p);
 }
 
+static cscd_status make_motion_safe(proof *p) {
+    cscd_view x0, x1;
+    cscd_mutable_view end;
+    return cscd_detector_make_safe(p->detector, at_moment(p, 0, &x0), at_moment(p, 3, &x1), NULL,
+                                   reached_of(p, &end), &p->answer.safe);
+}
+
+static void read_safe_motion(proof *p) {
+    const cscd_safe_motion *safe = &p->answer.safe;
+    proof_add(p, safe->responses, p->shape.vertex_count);
+    proof_add(p, &safe->mean_share, sizeof safe->mean_share);
+    proof_add(p, &safe->rounds, sizeof safe->rounds);
+    proof_add_items(p, safe->held, safe->held_count, sizeof *safe->held);
+    read_reached(p);
+}
+
+static const proof_call safe_motion = {"detector_make_safe", PROOF_ASKS, make_motion_safe, read_safe_motion};
 static const proof_call max_step = {"detector_max_step", PROOF_ASKS, go_free, read_step};
 static const proof_call truncation = {"detector_truncate", PROOF_ASKS, truncate_motion, read_truncation};
 
@@ -154,14 +171,14 @@ static void open_loose(proof *p) {
 #define ALL_CALLS                                                                                            \
     {                                                                                                        \
         &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
-            &line_positions, &line_step, &line_near, &step_back                                              \
+            &safe_motion, &line_positions, &line_step, &line_near, &step_back                                \
     }
 #define FAMILY_CALLS                                                                                         \
     { &step_first, &near_pairs, &near_unique, &step_second, &step_back }
 #define LOOSE_CALLS                                                                                          \
     {                                                                                                        \
         &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
-            &line_near, &step_first, &step_back                                                              \
+            &safe_motion, &line_near, &step_first, &step_back                                                \
     }
 
 static const proof_row rows[] = {
@@ -170,6 +187,7 @@ static const proof_row rows[] = {
     {"bounds", {&bounds}, open_detector, .family = SCENE_TWO_SPHERES},
     {"max_step", {&max_step}, open_detector, .family = SCENE_TWO_SPHERES},
     {"truncation", {&truncation}, open_detector, .family = SCENE_TWO_SPHERES},
+    {"safe motion", {&safe_motion}, open_detector, .family = SCENE_TWO_SPHERES},
     {"line",
      {&line_create, &line_begin, &line_near, &line_step, &line_again},
      open_detector,

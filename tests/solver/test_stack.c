@@ -44,6 +44,8 @@ static void move_safely(rig *r, const scene *s) {
     expect_ok(cscd_detector_max_step(r->detector, x0, x1, NULL, &step));
     expect_ok(cscd_detector_truncate(r->detector, x0, x1, 0.05,
                                      CSCD_MUTABLE_DOUBLES(reached, s->vertex_count), &cut));
+    cscd_safe_motion safe;
+    expect_ok(cscd_detector_make_safe(r->detector, x0, x1, NULL, NULL, &safe));
     expect_ok(cscd_line_search_create(r->detector, &search));
     expect_ok(cscd_line_search_begin(search, x0, x1, 0.05));
     expect_ok(cscd_line_search_max_step(search, 1.0, NULL, &step));

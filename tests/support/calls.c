@@ -118,6 +118,15 @@ cscd_status truncate_packed(cscd_detector *detector, const double *x0, const dou
                                   mutable_view_of(mesh, reached, &end), out);
 }
 
+cscd_status make_safe_packed(cscd_detector *detector, const double *x0, const double *x1,
+                             const cscd_response_options *options, double *reached, cscd_safe_motion *out) {
+    const cscd_mesh *mesh = mesh_of(detector);
+    cscd_view from, to;
+    cscd_mutable_view end;
+    return cscd_detector_make_safe(detector, view_of(mesh, x0, &from), view_of(mesh, x1, &to), options,
+                                   mutable_view_of(mesh, reached, &end), out);
+}
+
 cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach) {
     cscd_view from, to;
     return cscd_line_search_begin(line, line_view_of(x0, &from), line_view_of(x1, &to), reach);

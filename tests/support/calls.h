@@ -31,6 +31,8 @@ cscd_status displacement_bounds_packed(cscd_detector *detector, const double *x0
                                        double *bounds, cscd_displacement_bounds *out);
 cscd_status truncate_packed(cscd_detector *detector, const double *x0, const double *x1, double search_radius,
                             double *reached, cscd_truncation *out);
+cscd_status make_safe_packed(cscd_detector *detector, const double *x0, const double *x1,
+                             const cscd_response_options *options, double *reached, cscd_safe_motion *out);
 
 cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach);
 cscd_status line_positions_packed(cscd_line_search *line, double fraction, double *positions);

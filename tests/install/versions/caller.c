@@ -153,6 +153,17 @@ static void ask_detector(caller_state *s) {
               "cscd_detector_find_intersections");
 }
 
+static void make_motion_safe(caller_state *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
+    cscd_safe_motion found;
+    OPTIONS(cscd_response_options, cscd_response_defaults_sized, options);
+    REFUSE(cscd_response_options, options.value,
+           cscd_detector_make_safe(s->detector, x0, x0, &options.value, NULL, &found),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_detector_make_safe(s->detector, x0, x0, &options.value, NULL, &found),
+              "cscd_detector_make_safe");
+}
+
 static void track_events(caller_state *s) {
     cscd_event_tracker *tracker = NULL;
     OPTIONS(cscd_event_options, cscd_event_defaults_sized, options);
@@ -184,6 +195,7 @@ int main(void) {
     create_plan_from_parts(&s);
     create_detector(&s);
     ask_detector(&s);
+    make_motion_safe(&s);
     track_events(&s);
     create_sensors(&s);
     cscd_sensors_destroy(s.sensors);

@@ -1,0 +1,474 @@
+/* Makes a motion safe: responds to its contacts until none is left, and truncates what the response cannot solve. */
+#include "runtime/solver/contact_response.h"
+#include "runtime/solver/solver.h"
+#include "src/core/floating.h"
+#include "src/core/least_sizes.h"
+#include "src/core/timer.h"
+#include "src/core/vec3.h"
+#include "src/mesh/positions.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- options ------------------------------------------------------------------------------------------- */
+
+static const cscd_response_options default_options = {.struct_size = sizeof default_options};
+
+void cscd_response_defaults_sized(cscd_response_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
+}
+
+static cscd_status take_options(cscd_context *context, const cscd_response_options *options,
+                                cscd_response_options *out) {
+    *out = default_options;
+    if (options == NULL) return CSCD_OK;
+    return struct_take_options(context, out, sizeof *out, LEAST_SIZE(cscd_response_options), options,
+                               "cscd_response_defaults");
+}
+
+static cscd_status check_numbers(cscd_context *context, const char *name, const double *numbers,
+                                 size_t count) {
+    for (size_t i = 0; numbers != NULL && i < count; i++) {
+        if (numbers[i] >= 0.0 && isfinite(numbers[i])) continue;
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "%s[%zu] is %g, expected a finite number, 0 or more", name, i, numbers[i]);
+    }
+    return CSCD_OK;
+}
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+typedef struct safe_work {
+    cscd_detector *detector;
+    const straight_motion *motion; /* as the caller wants it */
+    const cscd_response_options *options;
+    contact_response response;
+    double *wanted; /* the end that is still wanted: x1, less what is held */
+    double *shares; /* per object: of its motion, if it is an obstacle */
+    uint8_t *kinds; /* per vertex: cscd_response */
+    double *end;    /* the detector's: the trial end, as it is stored */
+    tries tries;
+    bool start_looked_at; /* what touches at x0 is held */
+    size_t held_count;
+    cscd_safe_motion found;
+    swept_interval rules;
+} safe_work;
+
+/* Makes a block at least as large as wanted, and keeps its first bytes. */
+static cscd_status grow_block(cscd_context *context, void **block, size_t *size, size_t wanted, size_t kept) {
+    if (wanted <= *size) return CSCD_OK;
+    void *grown = context_allocate(context, wanted + wanted / 2, 1);
+    if (grown == NULL) return CSCD_OUT_OF_MEMORY;
+    if (kept > 0) memcpy(grown, *block, kept);
+    context_free(context, *block);
+    *block = grown;
+    *size = wanted + wanted / 2;
+    return CSCD_OK;
+}
+
+enum { BYTES_PER_VERTEX = 7 * sizeof(double) + sizeof(impact_zone) + sizeof(uint32_t) + sizeof(uint8_t) };
+
+static cscd_status reserve_work(safe_work *w) {
+    cscd_detector *d = w->detector;
+    size_t vertices = d->mesh->vertex_count, objects = d->mesh->object_count;
+    cscd_status status = solver_reserve_reached(d);
+    if (status != CSCD_OK) return status;
+    if (d->response.vertices == NULL)
+        d->response.vertices =
+            context_allocate(d->context, vertices * BYTES_PER_VERTEX + objects * sizeof(double), 1);
+    if (d->response.vertices == NULL) return CSCD_OUT_OF_MEMORY;
+    contact_response *r = &w->response;
+    double *doubles = d->response.vertices;
+    w->wanted = doubles;
+    r->shift = doubles + 3 * vertices;
+    r->mobilities = doubles + 6 * vertices;
+    w->shares = doubles + 7 * vertices;
+    r->zones = (void *)(w->shares + objects);
+    r->parents = (void *)(r->zones + vertices);
+    w->kinds = (void *)(r->parents + vertices);
+    w->end = d->reached;
+    return CSCD_OK;
+}
+
+/* ---- begin --------------------------------------------------------------------------------------------- */
+
+/* Obstacles and half-spaces have given motions. */
+static bool is_given(const cscd_mesh *mesh, uint32_t object) {
+    return mesh->objects[object].obstacle || mesh->objects[object].kind == CSCD_OBJECT_HALF_SPACE;
+}
+
+static bool moves_as_wanted(const safe_work *w, uint32_t vertex) {
+    const cscd_detector *d = w->detector;
+    if (d->space.active.vertices != NULL && !d->space.active.vertices[vertex]) return true;
+    return is_given(d->mesh, cscd_mesh_vertex_object(d->mesh, vertex));
+}
+
+/* Only ratios of masses matter, and those beyond 2^100 are as good as infinite. Until the sums are complete, the array has
+ * masses. */
+static void weigh_vertices(safe_work *w) {
+    contact_response *r = &w->response;
+    const double *inverse = w->options->inverse_masses;
+    uint32_t count = w->detector->mesh->vertex_count;
+    double largest = 0.0;
+    for (uint32_t v = 0; v < count; v++) {
+        r->mobilities[v] = 0.0;
+        if (!moves_as_wanted(w, v)) largest = max_of(largest, inverse != NULL ? inverse[v] : 1.0);
+    }
+    for (uint32_t v = 0; v < count; v++) {
+        double mobility = moves_as_wanted(w, v) ? 0.0 : inverse != NULL ? inverse[v] / largest : 1.0;
+        r->mobilities[response_name(r, v)] += mobility > 0x1p-100 ? 1.0 / mobility : INFINITY;
+    }
+    for (uint32_t v = 0; v < count; v++)
+        r->mobilities[v] = r->mobilities[v] > 0.0 ? 1.0 / r->mobilities[v] : 0.0;
+}
+
+static cscd_status check_mobile(const safe_work *w) {
+    const double *inverse = w->options->inverse_masses;
+    bool any_free = false;
+    for (uint32_t v = 0; v < w->detector->mesh->vertex_count; v++) {
+        if (moves_as_wanted(w, v)) continue;
+        if (inverse == NULL || inverse[v] > 0.0) return CSCD_OK;
+        any_free = true;
+    }
+    if (!any_free) return CSCD_OK;
+    return context_fail(w->detector->context, CSCD_INVALID_ARGUMENT,
+                        "inverse_masses is 0 for every vertex that could move");
+}
+
+/* The end of a motion as far as numbers may go. */
+static double place_coordinate(double x, cscd_scalar scalar) {
+    return stored_coordinate(max_of(-0x1p300, min_of(x, 0x1p300)), scalar);
+}
+
+static cscd_scalar scalar_of(const safe_work *w, uint32_t object) {
+    return w->motion->scalars != NULL ? w->motion->scalars[object] : CSCD_SCALAR_DOUBLE;
+}
+
+/* Writes the trial end: what is wanted with its shift, as it is stored. */
+static void place_end(const safe_work *w) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        size_t first = mesh->objects[o].first_vertex, last = first + mesh->objects[o].vertex_count;
+        for (size_t v = first; v < last; v++) {
+            const double *shift = w->response.shift + 3 * (size_t)response_name(&w->response, (uint32_t)v);
+            for (size_t k = 0; k < 3; k++)
+                w->end[3 * v + k] = place_coordinate(w->wanted[3 * v + k] + shift[k], scalar_of(w, o));
+        }
+    }
+}
+
+static void begin_work(safe_work *w) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    size_t coordinates = (size_t)mesh->vertex_count * 3;
+    contact_response *r = &w->response;
+    r->mesh = mesh;
+    r->names = w->detector->config.exclusions.names;
+    r->x0 = w->motion->x0;
+    r->wanted = w->wanted;
+    r->friction = w->options->friction;
+    r->rounding = motion_rounding(w->motion);
+    w->rules = config_search_begin(&w->detector->config, &w->detector->space, r->x0, r->x0).interval;
+    r->rules = &w->rules;
+    memcpy(w->wanted, w->motion->x1, coordinates * sizeof(double));
+    memset(r->shift, 0, coordinates * sizeof(double));
+    memset(w->kinds, CSCD_RESPONSE_FREE, mesh->vertex_count);
+    for (uint32_t o = 0; o < mesh->object_count; o++) w->shares[o] = 1.0;
+    weigh_vertices(w);
+}
+
+/* ---- what touches at the start ------------------------------------------------------------------------- */
+
+static void hold_vertex(safe_work *w, uint32_t vertex) {
+    memcpy(w->wanted + 3 * (size_t)vertex, w->motion->x0 + 3 * (size_t)vertex, sizeof(double[3]));
+    w->kinds[vertex] = CSCD_RESPONSE_HELD;
+}
+
+/* Vertices stay with those of their seam, and with their obstacle. */
+static void hold_marked(safe_work *w) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    contact_response *r = &w->response;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (w->kinds[v] != CSCD_RESPONSE_HELD) continue;
+        w->kinds[response_name(r, v)] = CSCD_RESPONSE_HELD;
+        uint32_t object = cscd_mesh_vertex_object(mesh, v);
+        if (is_given(mesh, object)) w->shares[object] = 0.0;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        bool held = w->kinds[response_name(r, v)] == CSCD_RESPONSE_HELD;
+        if (!held && w->shares[cscd_mesh_vertex_object(mesh, v)] > 0.0) continue;
+        hold_vertex(w, v);
+        r->mobilities[response_name(r, v)] = 0.0;
+        memset(r->shift + 3 * (size_t)response_name(r, v), 0, sizeof(double[3]));
+    }
+}
+
+/* Finds the pairs that touch at x0, and holds their vertices there. */
+static cscd_status hold_touching(safe_work *w) {
+    cscd_detector *d = w->detector;
+    cscd_contacts touching;
+    cscd_status status =
+        tries_find(&w->tries, w->motion->x0, w->motion->x0, CSCD_MODE_ALL, STEP_BELOW_FLOOR, &touching);
+    w->start_looked_at = true;
+    if (status != CSCD_OK || touching.count == 0) return status;
+    if (touching.count > SIZE_MAX / 2 / sizeof(cscd_contact)) return CSCD_OUT_OF_MEMORY;
+    size_t size = touching.count * sizeof(cscd_contact);
+    status = grow_block(d->context, &d->response.held, &d->response.held_size, size, 0);
+    if (status != CSCD_OK) return status;
+    memcpy(d->response.held, touching.items, size);
+    w->held_count = touching.count;
+    for (size_t i = 0; i < touching.count; i++) {
+        for (int j = 0; j < 4; j++) w->kinds[touching.items[i].vertices[j]] = CSCD_RESPONSE_HELD;
+    }
+    hold_marked(w);
+    return CSCD_OK;
+}
+
+static bool is_held(const safe_work *w, const cscd_contact *c) {
+    for (int j = 0; j < 4; j++) {
+        if (w->kinds[c->vertices[j]] != CSCD_RESPONSE_HELD) return false;
+    }
+    return true;
+}
+
+/* ---- rounds -------------------------------------------------------------------------------------------- */
+
+/* Contacts stop what approaches in the first rounds, and then join zones. */
+enum { STOP_ROUNDS = 8, ROUNDS = 16 };
+
+/* Finds the contacts of the trial motion, and takes those that are not held among the stops. */
+static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found) {
+    cscd_detector *d = w->detector;
+    contact_response *r = &w->response;
+    place_end(w);
+    cscd_status status = tries_find(&w->tries, w->motion->x0, w->end, CSCD_MODE_ALL, rule, found);
+    if (status != CSCD_OK || found->count == 0) return status;
+    if (found->items[0].toi == 0.0 && !w->start_looked_at) {
+        status = hold_touching(w);
+        return status == CSCD_OK ? find_stops(w, rule, found) : status;
+    }
+    cscd_contact *items = d->results.contacts.items;
+    size_t count = 0;
+    for (size_t i = 0; i < found->count; i++) {
+        if (!is_held(w, &items[i])) items[count++] = items[i];
+    }
+    found->count = count;
+    if (count > SIZE_MAX / 4 / sizeof(contact_stop) - r->stop_count) return CSCD_OUT_OF_MEMORY;
+    status = grow_block(d->context, &d->response.stops, &d->response.stops_size,
+                        (r->stop_count + count) * sizeof(contact_stop), r->stop_count * sizeof(contact_stop));
+    r->stops = d->response.stops;
+    if (status == CSCD_OK) response_take(r, items, count);
+    return status;
+}
+
+/* Responds until no contact is left, or no round. */
+static cscd_status respond(safe_work *w, bool *free) {
+    cscd_contacts found;
+    for (uint32_t round = 0; round < ROUNDS; round++) {
+        if (round == STOP_ROUNDS) response_begin_zones(&w->response);
+        cscd_status status = find_stops(w, round == 0 ? STEP_NEARLY : STEP_BELOW_FLOOR, &found);
+        if (status != CSCD_OK) return status;
+        w->found.rounds = round + 1;
+        *free = found.count == 0;
+        if (*free) return CSCD_OK;
+        if (round < STOP_ROUNDS)
+            response_stop(&w->response);
+        else
+            response_join(&w->response, found.items, found.count);
+    }
+    place_end(w);
+    return CSCD_OK;
+}
+
+/* ---- truncation ---------------------------------------------------------------------------------------- */
+
+static bool differ_in_place(const double *a, const double *b, size_t vertex) {
+    for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
+        if (a[i] != b[i]) return true;
+    return false;
+}
+
+static double longest_motion(const safe_work *w, const double *end) {
+    double longest = 0.0;
+    for (size_t v = 0; v < w->detector->mesh->vertex_count; v++)
+        longest = max_of(longest, vec3_squared_distance(end + 3 * v, w->motion->x0 + 3 * v));
+    return sqrt(longest);
+}
+
+/* Obstacles move as a whole, a little less than the least share of any of their vertices. */
+static const double share_of_least = 1.0 - 0x1p-30;
+
+/* Finds how far each obstacle went. Returns whether any fell short of its share. */
+static bool lower_obstacle_shares(safe_work *w, const double *reached) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    bool any = false;
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        if (!is_given(mesh, o)) continue;
+        double least = w->shares[o];
+        for (size_t v = mesh->objects[o].first_vertex, i = 0; i < mesh->objects[o].vertex_count; i++, v++) {
+            if (!differ_in_place(reached, w->wanted, v)) continue;
+            double squared = vec3_squared_distance(w->motion->x1 + 3 * v, w->motion->x0 + 3 * v);
+            double went = vec3_squared_distance(reached + 3 * v, w->motion->x0 + 3 * v);
+            least = min_of(least, sqrt(went / squared) * share_of_least);
+        }
+        any |= least < w->shares[o];
+        w->shares[o] = least;
+    }
+    return any;
+}
+
+static void move_obstacles(const safe_work *w) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        size_t begin = (size_t)mesh->objects[o].first_vertex * 3;
+        size_t end = begin + (size_t)mesh->objects[o].vertex_count * 3;
+        for (size_t i = begin; w->shares[o] < 1.0 && i < end; i++) {
+            double x0 = w->motion->x0[i], way = w->shares[o] * (w->motion->x1[i] - x0);
+            w->wanted[i] = w->shares[o] > 0.0 ? place_coordinate(x0 + way, scalar_of(w, o)) : x0;
+        }
+    }
+}
+
+enum { OBSTACLE_ROUNDS = 3 };
+
+/* Planes shorten what is still in contact. What is wanted is the end of the response from here on, and obstacles that cannot
+ * get there go back as a whole, at last to where they were. */
+static cscd_status truncate_rest(safe_work *w) {
+    cscd_detector *d = w->detector;
+    tries_withdraw(&w->tries);
+    memcpy(w->wanted, w->end, (size_t)d->mesh->vertex_count * sizeof(double[3]));
+    const wanted_motion motion = {w->motion->x0, w->wanted, w->motion->scalars};
+    double radius = min_of(2.0 * (1.0 + 0x1p-40) * longest_motion(w, w->wanted), 0x1p299);
+    start_states_save(&d->known.starts);
+    for (int round = 0;; round++) {
+        cscd_truncation cut;
+        cscd_status status = truncation_find(d, &motion, radius, w->end, &cut);
+        w->found.rounds++;
+        if (status != CSCD_OK || !lower_obstacle_shares(w, w->end)) return status;
+        for (uint32_t o = 0; round >= OBSTACLE_ROUNDS && o < d->mesh->object_count; o++)
+            if (w->shares[o] < 1.0) w->shares[o] = 0.0;
+        move_obstacles(w);
+        step_withdraw(d);
+    }
+}
+
+/* ---- the answer ---------------------------------------------------------------------------------------- */
+
+static uint8_t response_to(const safe_work *w, uint32_t vertex, bool truncated) {
+    if (w->kinds[vertex] == CSCD_RESPONSE_HELD) return CSCD_RESPONSE_HELD;
+    if (truncated && (differ_in_place(w->end, w->wanted, vertex) ||
+                      w->shares[cscd_mesh_vertex_object(w->detector->mesh, vertex)] < 1.0))
+        return CSCD_RESPONSE_TRUNCATED;
+    if (w->response.zone_begin > 0 && response_in_zone(&w->response, vertex)) return CSCD_RESPONSE_ZONE;
+    const double *shift = w->response.shift + 3 * (size_t)response_name(&w->response, vertex);
+    return vec3_largest(shift) > 0.0 ? CSCD_RESPONSE_STOPPED : CSCD_RESPONSE_FREE;
+}
+
+/* Returns how much of its wanted motion a vertex has made, along it, from 0 to 1; -1: it wanted none. */
+static double surviving_share(const safe_work *w, size_t vertex) {
+    const double *x0 = w->motion->x0 + 3 * vertex, *x1 = w->motion->x1 + 3 * vertex;
+    double wanted[3], made[3], length;
+    vec3_subtract(x1, x0, wanted);
+    vec3_subtract(w->end + 3 * vertex, x0, made);
+    length = sqrt(vec3_dot(wanted, wanted));
+    if (length == 0.0) return -1.0;
+    double share = 0.0;
+    for (int k = 0; k < 3; k++) share += wanted[k] / length * made[k] / length;
+    return max_of(0.0, min_of(share, 1.0));
+}
+
+static void sum_up_motion(safe_work *w, bool truncated) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    cscd_safe_motion *out = &w->found;
+    double sum = 0.0;
+    size_t movers = 0;
+    out->least_share = out->obstacle_share = 1.0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        w->kinds[v] = response_to(w, v, truncated);
+        out->response_counts[w->kinds[v]]++;
+        out->moved |= differ_in_place(w->end, w->motion->x0, v);
+        double share = surviving_share(w, v);
+        if (share < 0.0 || is_given(mesh, cscd_mesh_vertex_object(mesh, v))) continue;
+        sum += share;
+        movers++;
+        out->least_share = min_of(out->least_share, share);
+    }
+    for (uint32_t o = 0; o < mesh->object_count; o++)
+        out->obstacle_share = min_of(out->obstacle_share, w->shares[o]);
+    out->mean_share = movers > 0 ? sum / (double)movers : 1.0;
+    out->pushed = response_count_pushed(&w->response);
+    out->responses = w->kinds;
+    out->held = w->detector->response.held;
+    out->held_count = w->held_count;
+}
+
+/* ---- cscd_detector_make_safe --------------------------------------------------------------------------- */
+
+static cscd_status find_safe_motion(safe_work *w) {
+    cscd_detector *d = w->detector;
+    bool free = false;
+    begin_work(w);
+    cscd_status status = respond(w, &free);
+    if (status == CSCD_OK && !free) status = truncate_rest(w);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
+    if (status != CSCD_OK) return status;
+    if (free) step_take(d, w->end);
+    sum_up_motion(w, !free);
+    return CSCD_OK;
+}
+
+static cscd_status make_safe_between(cscd_detector *d, const straight_motion *m,
+                                     const cscd_response_options *options, cscd_safe_motion *out) {
+    double since = timer_now_ms();
+    cscd_status status = step_check_positions(d, m->x0, m->x1);
+    if (status == CSCD_OK) status = motion_check(d->context, m);
+    if (status != CSCD_OK) return status;
+    safe_work work = {.detector = d, .motion = m, .options = options, .tries = {.detector = d}};
+    work.tries.timings.check_ms = d->results.timings.check_ms;
+    status = check_mobile(&work);
+    if (status != CSCD_OK) return status;
+    detector_begin_call(d);
+    const waiting_place waiting = detector_waiting_place(d);
+    status = reserve_work(&work);
+    if (status == CSCD_OK) status = waiting_settle(&waiting, m->x0);
+    if (status == CSCD_OK) status = waiting_only_touching(&waiting, m->x0);
+    if (status == CSCD_OK) status = find_safe_motion(&work);
+    if (status != CSCD_OK) return tries_fail(&work.tries, status);
+    tries_end(&work.tries, since);
+    *out = work.found;
+    return CSCD_OK;
+}
+
+static cscd_status make_safe_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                   const cscd_response_options *options, const cscd_mutable_view *reached,
+                                   cscd_safe_motion *out) {
+    static const char function[] = "cscd_detector_make_safe";
+    cscd_context *context = detector->context;
+    const cscd_mesh *mesh = detector->mesh;
+    cscd_response_options given;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "%s: out is NULL", function);
+    straight_motion motion = {.mesh = mesh};
+    cscd_safe_motion found;
+    cscd_status status = certified_check_method(detector, function);
+    if (status == CSCD_OK) status = take_options(context, options, &given);
+    if (status == CSCD_OK)
+        status = check_numbers(context, "inverse_masses", given.inverse_masses, mesh->vertex_count);
+    if (status == CSCD_OK) status = check_numbers(context, "friction", given.friction, mesh->object_count);
+    if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &motion.x0);
+    if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &motion.x1);
+    if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
+    if (status == CSCD_OK) status = truncation_scalars(detector, function, x0, reached, &motion.scalars);
+    if (status == CSCD_OK) status = make_safe_between(detector, &motion, &given, &found);
+    if (status != CSCD_OK) return status;
+    views_write(mesh, reached, detector->reached);
+    *out = found;
+    return CSCD_OK;
+}
+
+cscd_status cscd_detector_make_safe(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                    const cscd_response_options *options, const cscd_mutable_view *reached,
+                                    cscd_safe_motion *out) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(&entry, make_safe_views(detector, x0, x1, options, reached, out));
+}
