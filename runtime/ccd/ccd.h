@@ -170,6 +170,11 @@ typedef struct pair_plane {
 /* Finds a plane across the nearest points. x: the points, as in an elementary_query. */
 void pair_plane_find(cscd_contact_kind kind, const double x[4][3], pair_plane *out);
 
+/* Does the same along a direction that is known, from b's nearest point to a's, for nearest points that these weights
+ * name. False: the plane proves less than 0.985 of their distance, and *out is not that of pair_plane_find. */
+bool pair_plane_along(cscd_contact_kind kind, const double x[4][3], const double weights[4],
+                      const double direction[3], pair_plane *out);
+
 /* Returns a number that is at most the distance of the features less the length, and at least 0.985 times
  * that; 0 if they are no farther apart, or by less than 2^-352. Planes prove most of it, integers the rest. */
 double pair_gap(cscd_contact_kind kind, const double x[4][3], double length);

@@ -80,6 +80,41 @@ void pair_plane_find(cscd_contact_kind kind, const double x[4][3], pair_plane *o
     scale_plane(p.scale, out);
 }
 
+/* The largest coordinate of points that are relative to the first one. */
+static double extent_of_points(const double x[4][3]) {
+    double extent = 0.0;
+    for (int i = 3; i < 12; i++) extent = max_of(extent, fabs(x[i / 3][i % 3]));
+    return extent;
+}
+
+/* Rounding does not depend on a scale, which is a power of two, so this works without one: lengths of pairs are from
+ * 2^-300 to 2^301, and their squares far from the ends of the range of doubles. A unit of the scale that lemma 2 knows is
+ * at most twice the extent. */
+bool pair_plane_along(cscd_contact_kind kind, const double x[4][3], const double weights[4],
+                      const double direction[3], pair_plane *out) {
+    double local[4][3], apart[3] = {0.0, 0.0, 0.0};
+    const int first = points_of_first(kind);
+    for (int i = 0; i < 4; i++) {
+        vec3_subtract(x[i], x[0], local[i]);
+        for (int k = 0; k < 3; k++) apart[k] += weights[i] * local[i][k];
+    }
+    const double error = 2.0 * gap_error * extent_of_points((const double(*)[3])local);
+    out->low_a = INFINITY;
+    out->high_b = -INFINITY;
+    for (int i = 0; i < 4; i++) {
+        const double height = out->height[i] = vec3_dot(direction, local[i]);
+        if (i < first)
+            out->low_a = min_of(out->low_a, height);
+        else
+            out->high_b = max_of(out->high_b, height);
+    }
+    memcpy(out->normal, direction, sizeof out->normal);
+    out->gap = out->low_a - out->high_b - error;
+    out->distance = sqrt(vec3_dot(apart, apart)) + error;
+    const bool of_unit_length = fabs(vec3_dot(direction, direction) - 1.0) <= 0x1p-51;
+    return of_unit_length && out->gap > 0.0 && out->gap >= share_proven * out->distance;
+}
+
 double pair_gap(cscd_contact_kind kind, const double x[4][3], double length) {
     resting_pair p = rest_pair(kind, x);
     double scaled_length = length * p.scale;

@@ -11,7 +11,7 @@
 cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count,
                                   size_t item_size, size_t key_size) {
     if (count <= buffer->capacity && buffer->keys != NULL) return CSCD_OK;
-    result_buffer grown = {.capacity = count + count / 2};
+    result_buffer grown = {.capacity = room_with_spare(count)};
     grown.items = context_allocate(context, grown.capacity, item_size);
     grown.keys = context_allocate(context, grown.capacity, key_size);
     grown.spare_keys = context_allocate(context, grown.capacity, key_size);

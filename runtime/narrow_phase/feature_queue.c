@@ -161,11 +161,17 @@ static elementary_contact nearest_points(const swept_interval *interval, cscd_co
     return contact;
 }
 
+/* The limit of one pair of features in the queue. */
+static separation limit_of_pair(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                uint32_t b) {
+    return separation_on_ways(interval, kind, a, b, pair_separation(interval, kind, a, b));
+}
+
 /* The limits of the eight pairs from i on. */
 static void load_limits(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
                         uint32_t i, separations_x8 *limits) {
     for (uint32_t lane = 0; lane < LANES; lane++) {
-        separation limit = pair_separation(interval, kind, pairs->a[i + lane], pairs->b[i + lane]);
+        separation limit = limit_of_pair(interval, kind, pairs->a[i + lane], pairs->b[i + lane]);
         limits->distance[lane] = limit.distance;
         limits->tolerance[lane] = limit.tolerance;
     }
@@ -204,7 +210,7 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
         elementary_query query;
         elementary_contact contact;
         bool bounded = false;
-        separation limit = pair_separation(interval, kind, pairs->a[i], pairs->b[i]);
+        separation limit = limit_of_pair(interval, kind, pairs->a[i], pairs->b[i]);
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
         if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &limit, &contact, &bounded))
             add_contact(interval, kind, pairs, i, &contact, bounded, worker);

@@ -28,9 +28,13 @@ typedef struct swept_interval {
     bool thick;             /* a pair's distance is that of the rules, where this is the greater one */
     double tolerance;       /* of these distances, as a share of them; 0: the default */
     double activation;      /* above 0, where thick: pairs are found within so much more than that */
-    double beyond;          /* volumes are compared within so much more than the pairs' distances */
-    double floor_ratio;     /* above 0: pairs that start nearer than they should have a floor instead */
-    bool collecting;        /* pairs of features become the workers' candidates instead of being tested */
+    const double
+        *ways; /* per vertex, how far it may go at the most, where pairs at rest are found only if that may
+                             * bring them within `ways_kept`, or if they are within `ways_least` of it; else NULL */
+    double ways_kept, ways_least;
+    double beyond;      /* volumes are compared within so much more than the pairs' distances */
+    double floor_ratio; /* above 0: pairs that start nearer than they should have a floor instead */
+    bool collecting;    /* pairs of features become the workers' candidates instead of being tested */
 } swept_interval;
 
 /* Returns the part of an interval that the kernels read. */
@@ -82,6 +86,31 @@ static inline separation pair_separation(const swept_interval *interval, cscd_co
         return object_separation(interval, object_of_edge(interval, a), object_of_edge(interval, b));
     uint32_t first = kind == CSCD_CONTACT_EV ? object_of_edge(interval, a) : object_of_vertex(interval, a);
     return object_separation(interval, first, kind == CSCD_CONTACT_VH ? b : object_of_vertex(interval, b));
+}
+
+static inline double larger_way(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* The ways of the vertices of a triangle, and of an edge. */
+static inline double way_of_triangle(const swept_interval *interval, uint32_t triangle) {
+    const uint32_t *v = interval->mesh->triangles[triangle];
+    return larger_way(larger_way(interval->ways[v[0]], interval->ways[v[1]]), interval->ways[v[2]]);
+}
+
+static inline double way_of_edge(const swept_interval *interval, uint32_t edge) {
+    const uint32_t *v = interval->mesh->edges[edge];
+    return larger_way(interval->ways[v[0]], interval->ways[v[1]]);
+}
+
+/* Lowers the limit of a pair, VF or EE, to the ways of its sides; see ways. The share more covers the rounding of the sum. */
+static inline separation separation_on_ways(const swept_interval *interval, cscd_contact_kind kind,
+                                            uint32_t a, uint32_t b, separation limit) {
+    if (interval->ways == NULL) return limit;
+    const double way = kind == CSCD_CONTACT_VF ? interval->ways[a] + way_of_triangle(interval, b)
+                                               : way_of_edge(interval, a) + way_of_edge(interval, b);
+    const double distance = (interval->ways_kept + larger_way(way, interval->ways_least)) * (1.0 + 0x1p-17);
+    return distance < limit.distance ? proximity_limit(distance) : limit;
 }
 
 /* The distance within which volumes of a pair are compared. */

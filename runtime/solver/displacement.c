@@ -232,6 +232,7 @@ typedef struct truncation_work {
     const wanted_motion *motion;
     division_planes planes;
     double farthest; /* that a vertex may go, so that pairs that are not near stay apart */
+    double *ways;    /* per vertex: so far, or as far as it wants, whichever is less */
     double *end;
     double *shares; /* per vertex: of its motion, up to the first plane; at last what it goes */
     size_t *tries;  /* per vertex: how many of them did not fit */
@@ -250,7 +251,7 @@ static bool keeps_side(const division_plane *plane, int place, const double move
 }
 
 static bool keeps_sides(const truncation_work *w, size_t vertex, const double moved[3]) {
-    if (!(sqrt(vec3_dot(moved, moved)) * (1.0 + 0x1p-50) <= w->farthest)) return false;
+    if (!(sqrt(vec3_dot(moved, moved)) * (1.0 + 0x1p-50) <= w->ways[vertex])) return false;
     for (size_t i = w->planes.first[vertex]; i != DIVISION_NONE;) {
         const division_plane *plane = &w->planes.planes[i / 4];
         if (!keeps_side(plane, (int)(i % 4), moved)) return false;
@@ -374,10 +375,13 @@ static void sum_up_vertices(const truncation_work *w, cscd_truncation *out) {
 }
 
 /* Keeps the pairs that no plane divides, in order, and returns how many there are. */
-static size_t keep_held(const division_planes *planes, cscd_proximity *items) {
+static size_t keep_held(cscd_detector *d, const double *x0, const division_planes *planes) {
+    cscd_proximity *items = d->results.proximities.items;
     size_t held = 0;
     for (size_t i = 0; i < planes->count; i++) {
-        if (planes->planes[i].room[0] < 0.0) items[held++] = items[i];
+        if (planes->planes[i].room[0] >= 0.0) continue;
+        if (items[i].count == 0) proximity_complete(d, x0, i);
+        items[held++] = items[i];
     }
     return held;
 }
@@ -418,10 +422,11 @@ static void carry_states_over(cscd_detector *d, const double *end) {
 static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t **first) {
     size_t count = d->mesh->vertex_count;
     if (d->vertex_scratch == NULL)
-        d->vertex_scratch = context_allocate(d->context, count, 2 * sizeof(size_t) + sizeof(double));
+        d->vertex_scratch = context_allocate(d->context, count, 2 * sizeof(size_t) + 2 * sizeof(double));
     if (d->vertex_scratch == NULL) return CSCD_OUT_OF_MEMORY;
     w->shares = d->vertex_scratch;
-    w->tries = (void *)(w->shares + count);
+    w->ways = w->shares + count;
+    w->tries = (void *)(w->ways + count);
     *first = w->tries + count;
     return CSCD_OK;
 }
@@ -429,6 +434,30 @@ static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t
 static cscd_status reserve_planes(cscd_detector *d, size_t count, division_planes *out) {
     out->planes = pair_scratch(d, count, sizeof *out->planes);
     return out->planes != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+/* The end that a vertex wants, as it is stored, is within its way with the rounding that keeps_sides adds. */
+static void measure_ways(truncation_work *w) {
+    for (uint32_t i = 0; i < w->mesh->object_count; i++) {
+        const cscd_object *of = &w->mesh->objects[i];
+        cscd_scalar scalar = w->motion->scalars != NULL ? w->motion->scalars[i] : CSCD_SCALAR_DOUBLE;
+        for (size_t v = of->first_vertex; v < (size_t)of->first_vertex + of->vertex_count; v++) {
+            double wanted[3];
+            for (size_t k = 0; k < 3; k++)
+                wanted[k] = stored_coordinate(w->motion->x1[3 * v + k], scalar) - w->motion->x0[3 * v + k];
+            w->ways[v] = min_of(sqrt(vec3_dot(wanted, wanted)) * (1.0 + 0x1p-40), w->farthest);
+        }
+    }
+}
+
+/* Lists, in the detector's memory, the pairs that need a plane: others stay apart while vertices keep to their ways
+ * (docs/theory/displacement-bounds.md, lemma 1). Points that have no distance to keep from each other need none. */
+static cscd_status find_pairs_to_divide(cscd_detector *d, truncation_work *w, double search_radius,
+                                        cscd_proximities *out) {
+    measure_ways(w);
+    if (d->mesh->loose.point_count > 0) return find_near_pairs(d, w->motion->x0, search_radius, out);
+    const near_ways ways = {w->ways, search_distance(d, search_radius)};
+    return proximity_find_on_ways(d, w->motion->x0, &ways, out);
 }
 
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
@@ -439,7 +468,7 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     bool known = config_culls(&d->config) && start_states_hold(&d->known.starts, motion->x0);
     cscd_proximities near;
     cscd_status status = reserve_vertices(d, &work, &first);
-    if (status == CSCD_OK) status = find_near_pairs(d, motion->x0, search_radius, &near);
+    if (status == CSCD_OK) status = find_pairs_to_divide(d, &work, search_radius, &near);
     if (status == CSCD_LIST_TOO_LONG) *out = (cscd_truncation){.near_count = near.count};
     if (status == CSCD_OK) status = reserve_planes(d, near.count, &work.planes);
     if (status != CSCD_OK) return status;
@@ -452,7 +481,7 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     if (status != CSCD_OK) return status;
     *out = (cscd_truncation){.held = d->results.proximities.items, .near_count = near.count};
     sum_up_vertices(&work, out);
-    out->held_count = keep_held(&work.planes, d->results.proximities.items);
+    out->held_count = keep_held(d, motion->x0, &work.planes);
     if (known) carry_states_over(d, end);
     return CSCD_OK;
 }

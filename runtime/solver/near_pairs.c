@@ -82,7 +82,9 @@ static double share_of_a(const cscd_mesh *mesh, const division_plane *plane, con
 static double find_plane(const cscd_mesh *mesh, const cscd_proximity *pair, const double points[4][3],
                          pair_plane *out) {
     if (pair->kind == CSCD_CONTACT_VH) return half_space_plane(points, mesh->loose.normals[pair->b], out);
-    pair_plane_find(stencil_points(pair->kind), points, out);
+    const cscd_contact_kind points_of = stencil_points(pair->kind);
+    if (!pair_plane_along(points_of, points, pair->weights, pair->normal, out))
+        pair_plane_find(points_of, points, out);
     return 1.0;
 }
 

@@ -280,8 +280,28 @@ cscd_status proximity_check_distance(const cscd_detector *d, double distance, cs
                         beyond ? ", also with what pairs have to keep added to it" : "");
 }
 
-/* Sorts by (kind, a, b): first by b, then by kind and a, which keeps the order by b where these are equal. */
-static void sort_pairs(contact_key *keys, contact_key *spare, size_t count) {
+/* The bits that numbers of features of a mesh have. */
+static int bits_of_features(const cscd_mesh *mesh) {
+    const uint64_t edges = (uint64_t)mesh->edge_count + mesh->loose.point_count;
+    uint64_t largest = mesh->vertex_count | edges | mesh->triangle_count | mesh->object_count;
+    int bits = 0;
+    for (; largest > 0; largest >>= 1) bits++;
+    return bits;
+}
+
+/* Sorts by (kind, a, b): by one number, as short as it may be, or by b first and then by kind and a, which keeps the order by
+ * b where these are equal. */
+static void sort_pairs(const cscd_mesh *mesh, contact_key *keys, contact_key *spare, size_t count) {
+    enum { KIND_BITS = 3 };
+    const int bits = bits_of_features(mesh);
+    if (2 * bits + KIND_BITS <= 64) {
+        for (size_t i = 0; i < count; i++) {
+            const cscd_contact *pair = keys[i].contact;
+            keys[i].key = ((uint64_t)pair->kind << bits | pair->a) << bits | pair->b;
+        }
+        sort_by_number(keys, spare, count, sizeof *keys);
+        return;
+    }
     for (size_t i = 0; i < count; i++) keys[i].key = keys[i].contact->b;
     sort_by_number(keys, spare, count, sizeof *keys);
     for (size_t i = 0; i < count; i++)
@@ -289,8 +309,22 @@ static void sort_pairs(contact_key *keys, contact_key *spare, size_t count) {
     sort_by_number(keys, spare, count, sizeof *keys);
 }
 
+/* Names a pair, its nearest points, and what it has to keep; the numbers of pairs, distance and weight are left 0. */
+static void name_item(const proximity_scene *scene, const cscd_contact *found, cscd_proximity *out) {
+    memset(out, 0, sizeof *out);
+    out->kind = found->kind;
+    out->a = found->a;
+    out->b = found->b;
+    out->separation = near_separation(&scene->rules, found->kind, found->a, found->b);
+    const cscd_stencil s = mesh_stencil(scene->mesh, found->kind, found->a, found->b, found->u, found->v);
+    memcpy(out->vertices, s.vertices, sizeof out->vertices);
+    memcpy(out->weights, s.weights, sizeof out->weights);
+    memcpy(out->normal, found->normal, sizeof out->normal);
+}
+
 /* The items that tasks describe, and the context that they ask whether the call goes on. */
 typedef struct description {
+    bool bare; /* items get what division needs, and nothing else */
     progress *progress;
     proximity_scene scene;
     const contact_key *keys;
@@ -298,26 +332,35 @@ typedef struct description {
     size_t count;
 } description;
 
+/* Sorted pairs lie anywhere in the workers' memory, so they are fetched ahead. */
+enum { PAIRS_AHEAD = 12 };
+
 static void describe_found(void *data, uint32_t index) {
     const description *d = data;
     if (!progress_go_on(d->progress, 1.0)) return; /* the call ends, and nobody must read the list */
     size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
-    for (size_t i = begin; i < end && i < d->count; i++)
-        proximity_describe(&d->scene, d->keys[i].contact, &d->items[i]);
+    for (size_t i = begin; i < end && i < d->count; i++) {
+        if (i + PAIRS_AHEAD < d->count) {
+            const char *next = (const char *)d->keys[i + PAIRS_AHEAD].contact;
+            __builtin_prefetch(next);
+            __builtin_prefetch(next + CACHE_LINE_SIZE);
+        }
+        (d->bare ? name_item : proximity_describe)(&d->scene, d->keys[i].contact, &d->items[i]);
+    }
 }
 
 /* A call that has been cancelled fails here: callers look at what the items name. */
-static cscd_status describe_pairs(cscd_detector *d, const proximity_scene *scene, size_t count) {
+static cscd_status describe_pairs(cscd_detector *d, const proximity_scene *scene, size_t count, bool bare) {
     result_buffer *buffer = &d->results.proximities;
-    sort_pairs(buffer->keys, buffer->spare_keys, count);
-    description all = {&d->context->progress, *scene, buffer->keys, buffer->items, count};
+    sort_pairs(d->mesh, buffer->keys, buffer->spare_keys, count);
+    description all = {bare, &d->context->progress, *scene, buffer->keys, buffer->items, count};
     uint32_t shares = (uint32_t)((count + PAIRS_PER_SHARE - 1) / PAIRS_PER_SHARE);
     parallel_run(d->context->threads, shares, describe_found, &all);
     return context_progress_status(d->context);
 }
 
-cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_near_form form,
-                              cscd_proximities *out) {
+static cscd_status collect_items(cscd_detector *d, const double *positions, cscd_near_form form, bool bare,
+                                 cscd_proximities *out) {
     result_buffer *buffer = &d->results.proximities;
     proximity_scene scene = {d->mesh, positions, &d->config.rest, {d->mesh, &d->config}};
     size_t found, count;
@@ -331,14 +374,27 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
     count = found;
     if ((form & CSCD_NEAR_UNIQUE) != 0) {
         /* so that weights are summed up in one order by any number of threads */
-        if (scene.rest->squared_lengths != NULL) sort_pairs(buffer->keys, buffer->spare_keys, found);
+        if (scene.rest->squared_lengths != NULL) sort_pairs(d->mesh, buffer->keys, buffer->spare_keys, found);
         status = unique_pairs_list(d->context, &scene, buffer->keys, found, &d->results.names, buffer->items,
                                    &count);
     } else {
-        status = describe_pairs(d, &scene, count);
+        status = describe_pairs(d, &scene, count, bare);
     }
     if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count};
     return status;
+}
+
+cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_near_form form,
+                              cscd_proximities *out) {
+    return collect_items(d, positions, form, false, out);
+}
+
+void proximity_complete(cscd_detector *d, const double *positions, size_t item) {
+    result_buffer *buffer = &d->results.proximities;
+    const contact_key *keys = buffer->keys;
+    cscd_proximity *items = buffer->items;
+    proximity_scene scene = {d->mesh, positions, &d->config.rest, {d->mesh, &d->config}};
+    proximity_describe(&scene, keys[item].contact, &items[item]);
 }
 
 cscd_status proximity_check_form(cscd_context *context, cscd_near_form form) {
@@ -371,19 +427,38 @@ interval_search proximity_search(cscd_detector *d, const double *positions, doub
     return search;
 }
 
+/* Searches the moment; the trees are widened by the growth. */
+static cscd_status search_moment(cscd_detector *d, interval_search *search, volume_growth growth) {
+    cscd_status status = CSCD_OK;
+    if (d->config.stages->brute_force) {
+        status = interval_search_by_brute_force(search);
+    } else {
+        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, search->interval.x0, growth,
+                                     config_growth(&d->config));
+        if (status == CSCD_OK) status = interval_search_everything(search);
+        if (status == CSCD_OK) status = interval_search_loose(search);
+    }
+    return status;
+}
+
 cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_near_form form,
                            cscd_proximities *out) {
     interval_search search = proximity_search(d, positions, distance, form);
-    cscd_status status = CSCD_OK;
-    if (d->config.stages->brute_force) {
-        status = interval_search_by_brute_force(&search);
-    } else {
-        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, near_growth(d, distance, form),
-                                     config_growth(&d->config));
-        if (status == CSCD_OK) status = interval_search_everything(&search);
-        if (status == CSCD_OK) status = interval_search_loose(&search);
-    }
-    return status == CSCD_OK ? proximity_collect(d, positions, form, out) : status;
+    cscd_status status = search_moment(d, &search, near_growth(d, distance, form));
+    return status == CSCD_OK ? collect_items(d, positions, form, false, out) : status;
+}
+
+/* Pairs that nearly touch are found also where nothing moves, for the caller is told of them. */
+static const double nearly_touching = 0x1p-10;
+
+cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, const near_ways *ways,
+                                   cscd_proximities *out) {
+    interval_search search = proximity_search(d, positions, ways->farthest, CSCD_NEAR_PAIRS);
+    search.interval.ways = ways->ways;
+    search.interval.ways_kept = config_greatest_separation(&d->config);
+    search.interval.ways_least = nearly_touching * (ways->farthest - search.interval.ways_kept);
+    cscd_status status = search_moment(d, &search, uniform_growth(ways->farthest));
+    return status == CSCD_OK ? collect_items(d, positions, CSCD_NEAR_PAIRS, true, out) : status;
 }
 
 static cscd_status find_near_at(cscd_detector *d, const double *positions, double distance,

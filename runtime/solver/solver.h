@@ -24,6 +24,18 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
 cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_near_form form,
                            cscd_proximities *out);
 
+/* The pairs that a motion may bring together. */
+typedef struct near_ways {
+    const double *ways; /* per vertex: how far it goes at the most */
+    double farthest;    /* of all pairs */
+} near_ways;
+
+/* Finds all pairs that may come within what they keep while vertices go no farther than their ways, and lists them so, with
+ * kind, a, b, vertices, weights, normal and separation alone: proximity_complete fills in the rest of one item. */
+cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, const near_ways *ways,
+                                   cscd_proximities *out);
+void proximity_complete(cscd_detector *d, const double *positions, size_t item);
+
 /* Makes room for the positions that a call reaches, d->reached. */
 cscd_status solver_reserve_reached(cscd_detector *d);
 

@@ -113,8 +113,25 @@ static void check_plane(cscd_contact_kind kind, const points x, const pair_plane
     assert_true(distance_sign_of_sum(kind, p, plane->gap, 0.0, 1.0) > 0);
 }
 
+/* The plane across the connection of the nearest points, as a search describes it, is as sound as any other. */
+static bool check_plane_along(cscd_contact_kind kind, const points x) {
+    elementary_query query;
+    elementary_contact nearest = {.toi = 0.0};
+    pair_plane plane;
+    double weights[4];
+    memcpy(query.x0, x, sizeof query.x0);
+    memcpy(query.x1, x, sizeof query.x1);
+    separation_describe(&query, kind, &nearest);
+    cscd_stencil_weights(kind, nearest.u, nearest.v, weights);
+    if (!pair_plane_along(kind, x, weights, nearest.normal, &plane)) return false;
+    check_plane(kind, x, &plane);
+    assert_true(plane.gap >= 0.985 * plane.distance);
+    assert_true(distance_sign_of_sum(kind, x, plane.distance, 0.0, 1.0) <= 0);
+    return true;
+}
+
 TEST(gaps_equal_rational_numbers) {
-    int proven = 0, blocked = 0;
+    int proven = 0, blocked = 0, along = 0;
     random_seed(1);
     for (int i = 0; i < 4500; i++) {
         cscd_contact_kind kind = i % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
@@ -130,8 +147,10 @@ TEST(gaps_equal_rational_numbers) {
         check_gap(kind, x, length, 1.0 - 0x1p-39, exact_gap(kind, p, length));
         proven += plane.gap > 0.0;
         blocked += gap == 0.0;
+        along += check_plane_along(kind, p);
     }
-    assert_true(proven > 2000 && blocked > 700);
+    print_message("  %d planes along the connection\n", along);
+    assert_true(proven > 2000 && blocked > 700 && along > 1000);
 }
 
 /* What the exact level is for: a step of one unit in the last place above a face, where no plane in doubles helps. */

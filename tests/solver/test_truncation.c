@@ -45,6 +45,7 @@ static size_t note_held(const rig *r, const cscd_truncation *out) {
     for (size_t i = 0; i < out->held_count; i++) {
         cscd_stencil s = stencil_of(r, &out->held[i]);
         for (int j = 0; j < 4; j++) stays[s.vertices[j]] = true;
+        assert_true(out->held[i].count == 1 && out->held[i].weight == 1.0);
     }
     for (uint32_t v = 0; v < interval.vertex_count; v++)
         if (stays[v])
