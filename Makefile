@@ -143,7 +143,7 @@ endif
 THREAD_TESTS := bvh/test_traversal core/test_threads core/test_progress core/test_parallel_for core/test_contexts core/test_host_loop \
                 detector/test_reentry detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
                 intersections/test_first_pairs intersections/test_surface_answers cpp/test_callbacks \
-                proofs/test_steps proofs/test_solver_calls proofs/test_told proofs/test_intersections proofs/test_creations
+                proofs/test_steps proofs/test_solver_calls proofs/test_told proofs/test_intersections proofs/test_creations proofs/test_energies
 ifeq ($(CONFIG),tsan)
 TEST_SOURCES    := $(filter $(addsuffix .%,$(addprefix tests/,$(THREAD_TESTS))),$(TEST_SOURCES))
 endif
@@ -202,6 +202,7 @@ SLOW_cpp           := callbacks
 SLOW_culling       := choice culling local_culling verlet_list
 SLOW_depths        := deepest_points work_budget
 SLOW_detector      := change_mesh lifetimes list_cap object_rules oracle reentry waiting_random
+SLOW_energy        := energy_sums
 SLOW_events        := event_tracker event_tracker_bodies
 SLOW_install       := baseline_library embedding header_versions headers install places run_script
 SLOW_intersections := collapsed curves find_intersections first_pairs live_answers memory_budget pair_kind static_check_kernel winding

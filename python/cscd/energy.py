@@ -73,8 +73,8 @@ class Energy:
     """
 
     def __init__(self, mesh: Mesh, reach: float, law: str = "barrier", *, stiffness: float = 1.0,
-                 physical: bool = False, by_count: bool = False, beyond: bool = False, friction: Any = 0.0, slip: float = 0.0, threads: int = 1,
-                 simd: str = "auto") -> None:
+                 physical: bool = False, by_count: bool = False, beyond: bool = False, friction: Any = 0.0,
+                 slip: float = 0.0, threads: int = 1, simd: str = "auto") -> None:
         if law not in _LAWS:
             raise ValueError(f"law: expected one of {', '.join(_LAWS)}; got {law!r}")
         self.mesh = mesh
