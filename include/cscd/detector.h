@@ -443,6 +443,43 @@ static inline uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint3
  * plan fits a mesh with the same hash. */
 CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
 
+/* ---- surfaces of tetrahedra ---------------------------------------------------------------------------- */
+
+/* The boundary of a mesh of tetrahedra, for solvers whose elements these are: the triangles for
+ * cscd_object_of_triangles, and the way from their vertices back. docs/solver/surfaces.md has a program. */
+typedef struct cscd_tet_surface cscd_tet_surface;
+
+/* Finds the faces that only one tetrahedron has. tetrahedra: tetrahedron_count * 4 indices below vertex_count,
+ * in the order in which the fourth vertex is on the side of the normal of the first three, counter-clockwise
+ * from there: (b - a) x (c - a) . (d - a) > 0. INVALID_MESH: an index is too large, a vertex is twice in a
+ * tetrahedron, three have one face, or two lie on one side of theirs; the sentence names them. */
+CSCD_API cscd_status cscd_tet_surface_create(cscd_context *context, const uint32_t *tetrahedra,
+                                             size_t tetrahedron_count, uint32_t vertex_count,
+                                             cscd_tet_surface **out);
+
+/* Frees the surface and its arrays. */
+CSCD_API void cscd_tet_surface_destroy(cscd_tet_surface *surface);
+
+/* The arrays of a surface, which live as long as it. */
+typedef struct cscd_tet_surface_arrays {
+    uint32_t vertex_count, triangle_count;
+    const uint32_t
+        *triangles; /* three for each, by their numbers on the surface, counter-clockwise from outside */
+    const uint32_t *vertices;   /* per vertex of the surface: the index among all vertices, ascending */
+    const uint32_t *tetrahedra; /* per triangle: its tetrahedron, ascending */
+} cscd_tet_surface_arrays;
+
+/* Returns the arrays. An example, how positions go to the surface and gradients come back:
+ *
+ *     const cscd_tet_surface_arrays s = cscd_tet_surface_get(surface);
+ *     for (uint32_t v = 0; v < s.vertex_count; v++)
+ *         for (int k = 0; k < 3; k++) x[3 * v + k] = nodes[3 * s.vertices[v] + k];
+ *     // ... and once the gradient by x is known:
+ *     for (uint32_t v = 0; v < s.vertex_count; v++)
+ *         for (int k = 0; k < 3; k++) forces[3 * s.vertices[v] + k] -= gradient[3 * v + k];
+ */
+CSCD_API cscd_tet_surface_arrays cscd_tet_surface_get(const cscd_tet_surface *surface);
+
 /* ==== Detector ============================================================================================== */
 
 /* Finds the contacts of one mesh, interval by interval. docs/solver/guarantees.md has all promises,

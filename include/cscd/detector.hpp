@@ -194,6 +194,19 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         return find<intersections>(
             [&](intersections *out) { return cscd_detector_find_intersections(get(), at, &options, out); });
     }
+    /* With their gradients. */
+    measures overlap_volumes(const positions &x,
+                             const cscd_intersection_options &options = cscd_intersection_defaults()) {
+        const cscd_view *at = covering(x);
+        return find<measures>(
+            [&](measures *out) { return cscd_detector_overlap_volumes(get(), at, &options, out); });
+    }
+    measures curve_lengths(const positions &x,
+                           const cscd_intersection_options &options = cscd_intersection_defaults()) {
+        const cscd_view *at = covering(x);
+        return find<measures>(
+            [&](measures *out) { return cscd_detector_curve_lengths(get(), at, &options, out); });
+    }
     /* Contacts of a list, summed up by pair of parts. */
     contact_part_pairs contact_parts(span<const cscd_contact> items) {
         return find<contact_part_pairs>([&](contact_part_pairs *out) {

@@ -49,6 +49,17 @@ using contacts = list<cscd_contacts>;
 using intersections = list<cscd_intersections>;
 using proximities = list<cscd_proximities>;
 using contact_part_pairs = list<cscd_contact_part_pairs>;
+using measures = list<cscd_measures>;
+using candidates = list<cscd_candidates>;
+
+/* The gradient of one value, by ascending vertex; all of them. */
+inline span<const cscd_vertex_gradient> gradients(const cscd_measures &found,
+                                                  const cscd_measure &of) noexcept {
+    return {found.gradients + of.first_gradient, of.gradient_count};
+}
+inline span<const cscd_vertex_gradient> gradients(const cscd_measures &found) noexcept {
+    return {found.gradients, found.gradient_count};
+}
 
 /* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */
 inline span<const cscd_curve> curves(const cscd_intersections &found) noexcept {

@@ -173,6 +173,44 @@ class mesh : public detail::owner<cscd_mesh, cscd_mesh_destroy>, public mesh_fun
     }
 };
 
+/* ---- surfaces of tetrahedra ------------------------------------------------------------------------------ */
+
+/* The boundary of tetrahedra, and the maps from its vertices and triangles back to theirs. Arrays live as long as it. */
+class tet_surface : public detail::owner<cscd_tet_surface, cscd_tet_surface_destroy> {
+  public:
+    using indices = span<const std::uint32_t>;
+
+    tet_surface(const context &context, span<const std::array<std::uint32_t, 4>> tetrahedra,
+                std::uint32_t vertex_count)
+        : owner(context.state()) {
+        const std::uint32_t *first = tetrahedra.empty() ? nullptr : tetrahedra.data()->data();
+        create([&](cscd_tet_surface **out) {
+            return cscd_tet_surface_create(context.get(), first, tetrahedra.size(), vertex_count, out);
+        });
+    }
+    std::uint32_t vertex_count() const noexcept {
+        return arrays().vertex_count;
+    }
+    std::uint32_t triangle_count() const noexcept {
+        return arrays().triangle_count;
+    }
+    /* Three for each triangle, for object_of_triangles. */
+    indices triangles() const noexcept {
+        return {arrays().triangles, std::size_t{3} * triangle_count()};
+    }
+    indices vertices() const noexcept {
+        return {arrays().vertices, vertex_count()};
+    }
+    indices tetrahedra() const noexcept {
+        return {arrays().tetrahedra, triangle_count()};
+    }
+
+  private:
+    cscd_tet_surface_arrays arrays() const noexcept {
+        return cscd_tet_surface_get(get());
+    }
+};
+
 } // namespace cscd
 
 #endif

@@ -333,6 +333,24 @@ CSCD_API cscd_status cscd_line_search_begin(cscd_line_search *search, const cscd
 /* Returns the number of candidates. Half-spaces have none: every vertex is tested with them. */
 CSCD_API size_t cscd_line_search_candidate_count(const cscd_line_search *search);
 
+/* Two features that may come near each other on the way. */
+typedef struct cscd_candidate {
+    cscd_contact_kind kind; /* VF, EE, VV or EV */
+    uint32_t a, b;          /* as in cscd_contact */
+} cscd_candidate;
+
+/* Candidates, sorted by (kind, a, b). The list lives as cscd_proximities. */
+typedef struct cscd_candidates {
+    const cscd_candidate *items;
+    size_t count;
+} cscd_candidates;
+
+/* Lists the candidates, for solvers that have energies or tests of their own. Every pair of features that
+ * comes within reach, or min_separation, between x0 and x1 is in the list, except pairs with a vertex in
+ * common and those that are left out (ignored, seams); so it may be shorter than the count. INVALID_ARGUMENT:
+ * the line has no motion, or the rules have changed since. */
+CSCD_API cscd_status cscd_line_search_candidates(cscd_line_search *search, cscd_candidates *out);
+
 /* Writes the positions x0 + fraction (x1 - x0), rounded, for a fraction in [0,1]. At 0 and 1 they are x0 and
  * x1 themselves. */
 CSCD_API cscd_status cscd_line_search_positions(cscd_line_search *search, double fraction,

@@ -25,6 +25,10 @@ class line_search : public detail::owner<cscd_line_search, cscd_line_search_dest
     std::size_t candidate_count() const noexcept {
         return cscd_line_search_candidate_count(get());
     }
+    cscd::candidates candidates() {
+        return detail::find_list<cscd::candidates>(
+            state_, [&](cscd::candidates *out) { return cscd_line_search_candidates(get(), out); });
+    }
     void positions(double fraction, const mutable_positions &out) {
         const cscd_mutable_view *views = out.covering(object_count());
         detail::make_call(state_, [&] { return cscd_line_search_positions(get(), fraction, views); });

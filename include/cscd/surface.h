@@ -1,6 +1,6 @@
 /* Intersections at one moment: which triangles cross, along which curves, what is buried in what and how
- * deep, and sums by parts. cscd_detector_find_intersections finds all of it. Lists belong to the detector and
- * live until its next call. */
+ * deep, and sums by parts. cscd_detector_find_intersections finds all of it. Volumes and lengths also come with
+ * their gradients. Lists belong to the detector and live until its next call. */
 #ifndef CSCD_SURFACE_API_H
 #define CSCD_SURFACE_API_H
 
@@ -520,6 +520,71 @@ static inline cscd_status cscd_detector_check(cscd_detector *detector, const csc
                                               cscd_intersections *out) {
     return cscd_detector_find_intersections(detector, positions, NULL, out);
 }
+
+/* ==== Volumes and lengths with their gradients ============================================================== */
+
+/* Energies for solvers and training loops that start where bodies are in each other. docs/solver/surfaces.md has a
+ * program, docs/theory/curves.md the proofs. */
+
+/* The derivatives by the three coordinates of a vertex. */
+typedef struct cscd_vertex_gradient {
+    uint32_t vertex;
+    uint32_t reserved; /* 0 */
+    double gradient[3];
+} cscd_vertex_gradient;
+
+/* A measure of two bodies (cscd_winding), or of one with itself. */
+typedef struct cscd_measure {
+    uint32_t a, b; /* a <= b */
+    double value;  /* NaN: unknown, and there is no gradient */
+
+    /* Its range of gradients, by ascending vertex. Other vertices have the derivative 0. */
+    size_t first_gradient, gradient_count;
+} cscd_measure;
+
+/* A measure of all pairs of bodies, sorted by (a, b). Other pairs have the value 0. The lists live until the
+ * detector's next call. */
+typedef struct cscd_measures {
+    const cscd_measure *items;
+    size_t count;
+    const cscd_vertex_gradient *gradients;
+    size_t gradient_count;
+    double sum;     /* of the known values */
+    size_t unknown; /* the number of those that are unknown */
+} cscd_measures;
+
+/* Adds weight times the gradient of all known values to `gradient`, three numbers for each vertex. */
+static inline void cscd_measures_add(const cscd_measures *measures, double weight, double *gradient) {
+    for (size_t i = 0; i < measures->gradient_count; i++) {
+        const cscd_vertex_gradient *from = &measures->gradients[i];
+        const size_t first = from->vertex;
+        for (size_t k = 0; k < 3; k++) gradient[3 * first + k] += weight * from->gradient[k];
+    }
+}
+
+/* Finds the volumes that bodies have in common, and their gradients. Of two bodies it is the volume that both
+ * contain. Of one with itself it is the integral of (winding number - 1) where that is above 1, so what lies
+ * in it three times counts twice. Only closed components count (cscd_overlap): the value is NaN where an open
+ * one crosses the other body or has a patch in it, and where pairs on a curve are left out.
+ *
+ * The gradient at a vertex is the integral of its hat function times the outward normal over the surface that
+ * bounds the volume. It is continuous, except where orientations or pairs to leave out change, and where
+ * surfaces lie on each other. Of the options, which may be NULL, part_bodies, orientation and max_memory
+ * count. INVALID_ARGUMENT: there are inactive triangles, or an option asks for fewer pairs. LIST_TOO_LONG:
+ * max_memory, or longest_list. All else is as for cscd_detector_find_intersections. */
+CSCD_API cscd_status cscd_detector_overlap_volumes(cscd_detector *detector, const cscd_view *positions,
+                                                   const cscd_intersection_options *options,
+                                                   cscd_measures *out);
+
+/* Finds the lengths of the intersection curves between bodies, open ones included, and their gradients. Each
+ * piece of a curve counts for the bodies of its two triangles; with part_bodies these are those of
+ * cscd_detector_body_labels. A length is continuous, and its gradient has kinks where a curve passes over an
+ * edge (Volino and Magnenat-Thalmann 2006 move cloth by it). Where an edge lies in the plane of a triangle on
+ * the curve there is no derivative: its point counts as going with the edge. Options and statuses are those of
+ * cscd_detector_overlap_volumes, but inactive triangles are allowed. */
+CSCD_API cscd_status cscd_detector_curve_lengths(cscd_detector *detector, const cscd_view *positions,
+                                                 const cscd_intersection_options *options,
+                                                 cscd_measures *out);
 
 #ifdef __cplusplus
 }

@@ -15,6 +15,7 @@ from .errors import Cancelled, Error, InContact, ListTooLong
 from .files import FrameSequence, Recording, read, write_report
 from .intersections import Curve, Intersections, PartPairs
 from .line_search import LineSearch
+from .measures import Measures, TetSurface, tet_surface
 from .mesh import HalfSpace, Mesh, Points, Scene, Wires
 from .pairs import pairs_near, pairs_step
 from .plan import ComparedPlan, Plan
@@ -27,7 +28,8 @@ __version__: str = _library.cscd_version_string().decode()
 
 __all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Energy", "EnergySum",
            "Error", "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
-           "LineSearch", "ListTooLong", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan", "Points",
-           "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene", "Wires", "__version__", "contacts",
+           "LineSearch", "ListTooLong", "Measures", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan",
+           "Points", "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene", "TetSurface", "Wires", "__version__",
+           "contacts",
            "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay",
-           "self_intersecting_faces", "self_intersections", "write_report"]
+           "self_intersecting_faces", "self_intersections", "tet_surface", "write_report"]

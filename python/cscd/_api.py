@@ -44,6 +44,7 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_plan_triangle_regions": (c_void_p, [c_void_p]),
     "cscd_response_defaults_sized": (None, [c_void_p, c_size_t]),
     "cscd_status_string": (c_char_p, [c_uint32]),
+    "cscd_tet_surface_destroy": (None, [c_void_p]),
     "cscd_version_string": (c_char_p, []),
 }
 

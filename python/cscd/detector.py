@@ -16,6 +16,7 @@ from .errors import InContact, ListTooLong
 from .intersections import Intersections, _Surface, collapsed_of, intersection_options, kind_set
 from .line_search import LineSearch
 from .live import LiveSettings
+from .measures import Measures
 from .mesh import Mesh
 from .plan import Plan
 from .results import RESPONSES, Contacts, Proximities, SafeMotion, copy_records, near_form
@@ -214,6 +215,27 @@ class Detector(LiveSettings):
         with host.lock:
             self._find(host, views, options)
             return bool(self._lists["intersections"]["count"][0])
+
+    def overlap_volumes(self, x: Any) -> Measures:
+        """The volumes that bodies have in common at positions ``x``, and how they change with every vertex.
+
+        Of a body with itself it is the integral of (winding number - 1) where that is above 1. Values are NaN where an open
+        surface is in a body or crosses one. Bodies are parts that are closed by themselves, or objects (``set_parts``).
+        """
+        return self._measures(library.cscdpy_detector_overlap_volumes, x)
+
+    def curve_lengths(self, x: Any) -> Measures:
+        """The lengths of the intersection curves of bodies, open ones, too, at positions ``x``, and how they change."""
+        return self._measures(library.cscdpy_detector_curve_lengths, x)
+
+    def _measures(self, function: Any, x: Any) -> Measures:
+        options = self._find_options(2**64 - 1, 0, False, False, False)
+        views, kept = self._views("x", x)
+        found = new_struct("measures")
+        host = self._host
+        with host.lock:
+            host.call(function, self._detector, address_of(views), address_of(options), address_of(found))
+            return Measures(found, self.mesh.vertex_count)
 
     def _surface_answers(self, positions: Any, parts: bool = False) -> _Surface:
         """Curves and depths, or sums by parts, of which they are a part, of positions that were looked at before."""

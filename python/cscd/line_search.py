@@ -8,7 +8,7 @@ import numpy as np
 
 from ._arrays import mutable_view, number_of
 from ._host import Handle
-from ._library import address_of, library
+from ._library import address_of, copy_items, library, new_struct
 from .results import Contacts, Proximities, copy_records, near_form
 
 if TYPE_CHECKING:
@@ -42,6 +42,15 @@ class LineSearch:
             detector._call(host, "free_step", library.cscdpy_line_search_begin, self._handle.pointer, address_of(start),
                            address_of(end), number_of("reach", reach))
         self.candidate_count: int = library.cscd_line_search_candidate_count(self._handle.pointer)
+
+    def candidates(self) -> Array:
+        """(k, 3) int64: kind (``CONTACT_KINDS``), a and b of every pair that comes within reach on the way, sorted."""
+        found = new_struct("candidates")
+        host = self._host
+        with host.lock:
+            host.call(library.cscdpy_line_search_candidates, self._handle.pointer, address_of(found))
+            items = copy_items(int(found["items"][0]), int(found["count"][0]), "candidate")
+        return np.stack([items["kind"], items["a"], items["b"]], axis=1)
 
     def positions(self, fraction: float) -> Array:
         """(n, 3): ``x0 + fraction * (x1 - x0)``, rounded to the type of ``x0``; fraction in [0, 1]."""

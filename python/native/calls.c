@@ -16,6 +16,10 @@
 
 CALL_OF(mesh_create, (host * h, const cscd_object_desc *objects, uint32_t object_count, cscd_mesh **out),
         cscd_mesh_create(h->context, objects, object_count, out))
+CALL_OF(tet_surface_create,
+        (host * h, const uint32_t *tetrahedra, size_t tetrahedron_count, uint32_t vertex_count,
+         cscd_tet_surface **out),
+        cscd_tet_surface_create(h->context, tetrahedra, tetrahedron_count, vertex_count, out))
 CALL_OF(plan_create,
         (host * h, const cscd_mesh *mesh, const cscd_view *positions, const cscd_plan_options *options,
          cscd_plan **out),
@@ -41,6 +45,14 @@ CALL_OF(detector_find_intersections,
         (host * h, cscd_detector *detector, const cscd_view *positions,
          const cscd_intersection_options *options, cscd_intersections *out),
         cscd_detector_find_intersections(detector, positions, options, out))
+CALL_OF(detector_overlap_volumes,
+        (host * h, cscd_detector *detector, const cscd_view *positions,
+         const cscd_intersection_options *options, cscd_measures *out),
+        cscd_detector_overlap_volumes(detector, positions, options, out))
+CALL_OF(detector_curve_lengths,
+        (host * h, cscd_detector *detector, const cscd_view *positions,
+         const cscd_intersection_options *options, cscd_measures *out),
+        cscd_detector_curve_lengths(detector, positions, options, out))
 CALL_OF(detector_find_near,
         (host * h, cscd_detector *detector, const cscd_view *positions, double distance, uint32_t form,
          cscd_proximities *out),
@@ -74,6 +86,8 @@ CALL_OF(detector_set_rest, (host * h, cscd_detector *detector, const cscd_view *
 CALL_OF(line_search_begin,
         (host * h, cscd_line_search *search, const cscd_view *x0, const cscd_view *x1, double reach),
         cscd_line_search_begin(search, x0, x1, reach))
+CALL_OF(line_search_candidates, (host * h, cscd_line_search *search, cscd_candidates *out),
+        cscd_line_search_candidates(search, out))
 CALL_OF(line_search_positions,
         (host * h, cscd_line_search *search, double fraction, const cscd_mutable_view *positions),
         cscd_line_search_positions(search, fraction, positions))
@@ -116,6 +130,8 @@ CALL_OF(energy_evaluate_friction,
 
 RESULT_OF(mesh_component, (const cscd_mesh *mesh, uint32_t component, cscd_component *out),
           cscd_mesh_component(mesh, component))
+RESULT_OF(tet_surface_get, (const cscd_tet_surface *surface, cscd_tet_surface_arrays *out),
+          cscd_tet_surface_get(surface))
 RESULT_OF(plan_describe, (const cscd_plan *plan, cscd_plan_info *out), cscd_plan_describe(plan))
 RESULT_OF(plan_compared, (const cscd_plan *plan, uint32_t place, cscd_compared_plan *out),
           cscd_plan_compared(plan, place))

@@ -208,6 +208,16 @@ FIELDS(proximity, FIELD(cscd_proximity, kind), FIELD(cscd_proximity, a), FIELD(c
        FIELD(cscd_proximity, normal), FIELD(cscd_proximity, threshold), FIELD(cscd_proximity, weight),
        FIELD(cscd_proximity, separation))
 FIELDS(proximities, FIELD(cscd_proximities, items), FIELD(cscd_proximities, count))
+FIELDS(candidate, FIELD(cscd_candidate, kind), FIELD(cscd_candidate, a), FIELD(cscd_candidate, b))
+FIELDS(candidates, FIELD(cscd_candidates, items), FIELD(cscd_candidates, count))
+FIELDS(vertex_gradient, FIELD(cscd_vertex_gradient, vertex), FIELD(cscd_vertex_gradient, gradient))
+FIELDS(measure, FIELD(cscd_measure, a), FIELD(cscd_measure, b), FIELD(cscd_measure, value),
+       FIELD(cscd_measure, first_gradient), FIELD(cscd_measure, gradient_count))
+FIELDS(measures, FIELD(cscd_measures, items), FIELD(cscd_measures, count), FIELD(cscd_measures, gradients),
+       FIELD(cscd_measures, gradient_count), FIELD(cscd_measures, sum), FIELD(cscd_measures, unknown))
+FIELDS(tet_surface_arrays, FIELD(cscd_tet_surface_arrays, vertex_count),
+       FIELD(cscd_tet_surface_arrays, triangle_count), FIELD(cscd_tet_surface_arrays, triangles),
+       FIELD(cscd_tet_surface_arrays, vertices), FIELD(cscd_tet_surface_arrays, tetrahedra))
 FIELDS(free_step, FIELD(cscd_free_step, fraction), FIELD(cscd_free_step, limited),
        FIELD(cscd_free_step, moved), FIELD(cscd_free_step, limit))
 FIELDS(displacement_bounds, FIELD(cscd_displacement_bounds, blocked),
@@ -297,6 +307,12 @@ static const struct_layout layouts[] = {LAYOUT(view),
                                         LAYOUT(stencil),
                                         LAYOUT(proximity),
                                         LAYOUT(proximities),
+                                        LAYOUT(candidate),
+                                        LAYOUT(candidates),
+                                        LAYOUT(vertex_gradient),
+                                        LAYOUT(measure),
+                                        LAYOUT(measures),
+                                        LAYOUT(tet_surface_arrays),
                                         LAYOUT(free_step),
                                         LAYOUT(displacement_bounds),
                                         LAYOUT(truncation),

@@ -158,6 +158,7 @@ void detector_free(cscd_detector *d) {
     part_sums_free(context, &d->results.part_sums);
     result_buffer_free(context, &d->results.contact_parts);
     rest_shape_free(context, &d->config.rest);
+    result_buffer_free(context, &d->results.candidates);
     context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);
     context_free(context, d->unpacked[1]);

@@ -14,7 +14,7 @@ typedef struct detector_results {
     cscd_guarantee *guarantees; /* per component, of the last step */
     cscd_timings timings;
     cscd_counters counters;
-    result_buffer contacts, proximities, intersections, contact_parts;
+    result_buffer contacts, proximities, intersections, contact_parts, candidates;
     result_buffer names;             /* of proximities, while repetitions are found */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
     part_summer part_sums;

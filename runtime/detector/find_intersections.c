@@ -303,6 +303,7 @@ typedef struct kind_question {
     cscd_intersection_options options;
     bool
         early; /* the search may end early; else every triangle that intersects is marked, so states are known */
+    surface_measure measure;
     cscd_intersections *out;
 } kind_question;
 
@@ -340,14 +341,14 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, const k
     bool more = surface_answers_wanted(&q->options);
     left_out_pairs *left_out = more ? surface_answers_begin(&d->space, &d->results.answers) : NULL;
     if (more && left_out == NULL) return CSCD_OUT_OF_MEMORY;
-    if (q->options.overlaps) s.left_out = left_out;
+    if (q->options.overlaps || q->measure == MEASURE_VOLUMES) s.left_out = left_out;
     cscd_status status = q->early ? find_first(&s) : find_all(&s);
     if (status == CSCD_OK && q->early && list_too_long(&s)) { /* than fits the memory: all are counted */
         memset(s.of_kind, 0, sizeof s.of_kind);
         status = find_all(&s);
     }
     if (status == CSCD_OK) status = give_result(&s, q->out);
-    const surface_scene scene = {&d->config, &d->space, positions, d->known.check.collapsed};
+    const surface_scene scene = {&d->config, &d->space, positions, d->known.check.collapsed, q->measure};
     if (status == CSCD_OK && more)
         status = surface_answers_find(d->results.answers, &scene, &q->options, &budget, q->out);
     if (status == CSCD_OK && q->options.parts) status = sum_up_parts(d, &budget, q->out);
@@ -411,19 +412,24 @@ static cscd_status ask_moment(cscd_detector *d, const double *positions, kind_qu
     return CSCD_OK;
 }
 
+/* Reads the positions and asks; options and measure are those of the question. */
+static cscd_status ask_of_views(cscd_detector *d, const cscd_view *positions, kind_question *question) {
+    const double *x = NULL;
+    cscd_status status = views_read(d->context, d->mesh, positions, "positions", &d->unpacked[0], &x);
+    if (d->config.memory_most == 0) look_at_memory(d);
+    question->early = stops_early(d, &question->options);
+    return status == CSCD_OK ? ask_moment(d, x, question) : status;
+}
+
 static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
                                  const cscd_intersection_options *options, cscd_intersections *out) {
     cscd_context *context = d->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_intersections: out is NULL");
-    const double *x = NULL;
     cscd_intersections found;
-    kind_question question = {.out = &found};
+    kind_question question = {.out = &found, .measure = MEASURE_NOTHING};
     cscd_status status = take_options(context, options, &question.options);
-    if (status == CSCD_OK) status = views_read(context, d->mesh, positions, "positions", &d->unpacked[0], &x);
-    if (d->config.memory_most == 0) look_at_memory(d);
-    question.early = stops_early(d, &question.options);
-    if (status == CSCD_OK) status = ask_moment(d, x, &question);
+    if (status == CSCD_OK) status = ask_of_views(d, positions, &question);
     if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) *out = found;
     return status;
 }
@@ -435,4 +441,41 @@ cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, find_in_views(detector, positions, options, out));
+}
+
+/* ---- measures ------------------------------------------------------------------------------------------ */
+
+static cscd_status take_measure_options(cscd_context *context, const cscd_intersection_options *options,
+                                        surface_measure measure, cscd_intersection_options *out) {
+    cscd_intersection_options given;
+    cscd_status status = take_options(context, options, &given);
+    if (status != CSCD_OK) return status;
+    if (given.answer != CSCD_ANSWER_LIST || (given.kinds & ALL_KINDS) != ALL_KINDS || given.stop_after != 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "volumes and lengths need all pairs: answer LIST, every kind, and stop_after 0");
+    *out = default_options;
+    out->curves = true;
+    out->patches = measure == MEASURE_VOLUMES;
+    out->part_bodies = given.part_bodies;
+    out->orientation = given.orientation;
+    out->max_memory = given.max_memory;
+    return CSCD_OK;
+}
+
+cscd_status surface_measure_ask(cscd_detector *d, const cscd_view *positions,
+                                const cscd_intersection_options *options, surface_measure measure,
+                                cscd_measures *out) {
+    cscd_intersections found;
+    kind_question question = {.out = &found, .measure = measure};
+    cscd_status status = take_measure_options(d->context, options, measure, &question.options);
+    if (status == CSCD_OK) status = ask_of_views(d, positions, &question);
+    if (status != CSCD_OK) return status;
+    if (found.left_out != 0)
+        return context_fail(
+            d->context, CSCD_LIST_TOO_LONG,
+            "what %zu pairs of triangles make up does not fit max_memory, which is %zu bytes; "
+            "%zu may be enough",
+            found.count, most_memory(d, &question.options), found.wanted_memory);
+    *out = d->results.answers->measures;
+    return CSCD_OK;
 }

@@ -7,6 +7,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
     depth_finder_destroy(a->depth_finder);
     overlap_finder_destroy(a->overlap_finder);
     cut_off_finder_destroy(a->cut_off_finder);
+    measure_finder_destroy(a->measure_finder);
     patch_finder_free(&a->patch_finder);
     orientation_finder_destroy(a->orientations);
     placed_names_free(&a->names);
@@ -33,8 +34,9 @@ static surface_answers *make_answers(const cscd_mesh *mesh) {
     a->overlap_finder = overlap_finder_create(context);
     a->cut_off_finder = cut_off_finder_create(context);
     a->depth_finder = depth_finder_create(context);
+    a->measure_finder = measure_finder_create(context);
     if (a->depth_finder == NULL || a->orientations == NULL || a->overlap_finder == NULL ||
-        a->cut_off_finder == NULL) {
+        a->cut_off_finder == NULL || a->measure_finder == NULL) {
         surface_answers_free(context, a);
         return NULL;
     }
@@ -203,6 +205,18 @@ static cscd_status find_depths(const answer_search *s) {
     return CSCD_OK;
 }
 
+static cscd_status find_measure(const answer_search *s) {
+    surface_answers *a = s->answers;
+    const bool volumes = s->scene->measure == MEASURE_VOLUMES;
+    const size_t before = s->budget->taken;
+    cscd_status status = volumes ? overlap_volumes_run(a->measure_finder, s->cuts, &a->left_out, &a->measures)
+                                 : curve_lengths_run(a->measure_finder, s->cuts, &a->measures);
+    if (!did_not_fit(s, status, before)) return status;
+    measure_finder_clear(a->measure_finder);
+    surface_answers_leave_out(s->budget, volumes ? CSCD_LEFT_OUT_OVERLAPS : CSCD_LEFT_OUT_CURVES, s->found);
+    return CSCD_OK;
+}
+
 /* Curves and patches, which all others need. */
 static cscd_status find_base(const answer_search *s) {
     surface_answers *a = s->answers;
@@ -227,6 +241,8 @@ static cscd_status find_base(const answer_search *s) {
 static cscd_status find_answers(const answer_search *s) {
     const cscd_intersection_options *o = s->options;
     cscd_status status = find_base(s);
+    if (status == CSCD_OK && s->scene->measure != MEASURE_NOTHING && s->found->left_out == 0)
+        return find_measure(s);
     if (s->found->patches == NULL) return status;
     if (status == CSCD_OK && o->cut_offs) status = find_cut_offs(s);
     if (status == CSCD_OK && o->depths) status = find_depths(s);

@@ -17,12 +17,17 @@ typedef struct surface_answers {
     cut_off_finder *cut_off_finder;
     depth_finder *depth_finder;
     same_solids same_solids;
+    measure_finder *measure_finder;
     cscd_curves curves;
     cscd_patches patches;
     cscd_overlaps overlaps;
     cscd_cut_offs cut_offs;
     cscd_depths depths;
+    cscd_measures measures;
 } surface_answers;
+
+/* The measure that a call asks for, besides what its options do. */
+typedef enum surface_measure { MEASURE_NOTHING, MEASURE_VOLUMES, MEASURE_LENGTHS } surface_measure;
 
 /* The surfaces that answers are about. */
 typedef struct surface_scene {
@@ -30,6 +35,7 @@ typedef struct surface_scene {
     search_space *space; /* whose trees are at the positions */
     const double *positions;
     const bool *collapsed; /* per component; NULL: none is */
+    surface_measure measure;
 } surface_scene;
 
 void surface_answers_free(cscd_context *context, surface_answers *a);
@@ -52,6 +58,12 @@ void surface_answers_leave_out(memory_budget *budget, cscd_left_out what, cscd_i
 
 /* Leaves out all that the options ask for, since the pairs themselves do not fit. */
 void surface_answers_leave_out_list(const cscd_intersection_options *options, cscd_intersections *found);
+
+/* Finds a measure of the surfaces in a call of its own. Of the options only part_bodies, orientation and max_memory are
+ * used. *out belongs to the detector. LIST_TOO_LONG: something does not fit the memory. */
+cscd_status surface_measure_ask(cscd_detector *d, const cscd_view *positions,
+                                const cscd_intersection_options *options, surface_measure measure,
+                                cscd_measures *out);
 
 /* Gives back what is kept from one call to the next, if that exceeds a number of bytes. */
 void surface_answers_shrink(cscd_context *context, surface_answers **answers, size_t most);

@@ -504,6 +504,27 @@ void cut_off_finder_clear(cut_off_finder *f);
 /* Patches have been found. OUT_OF_MEMORY and CANCELLED have no sentence. */
 cscd_status cut_off_finder_run(cut_off_finder *f, const surface_cuts *found, cscd_cut_offs *out);
 
+/* ---- measures with gradients --------------------------------------------------------------------------- */
+
+/* Finds the volumes of overlaps, or the lengths of curves, with their gradients, and keeps the memory of all calls. */
+typedef struct measure_finder measure_finder;
+
+/* NULL: no memory. */
+measure_finder *measure_finder_create(cscd_context *context);
+
+/* NULL is allowed. */
+void measure_finder_destroy(measure_finder *m);
+
+/* Gives back what it keeps from one call to the next. */
+void measure_finder_clear(measure_finder *m);
+
+/* Patches have been found. Here and below *out lives until the next call of either, and OUT_OF_MEMORY has no sentence. */
+cscd_status overlap_volumes_run(measure_finder *m, const surface_cuts *found, const left_out_pairs *left_out,
+                                cscd_measures *out);
+
+/* Curves have been found. */
+cscd_status curve_lengths_run(measure_finder *m, const surface_cuts *found, cscd_measures *out);
+
 /* ---- sums by pair of parts ----------------------------------------------------------------------------- */
 
 /* A pair of parts, and what belongs to it: a pair of triangles, a piece of a curve, or a depth. */

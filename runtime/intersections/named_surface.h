@@ -73,6 +73,41 @@ uint32_t patch_node(const patch_finder *p, uint32_t edge, uint32_t vertex);
 /* Whether two bodies, or a body and itself, are looked at with each other. Their objects say. */
 bool patch_bodies_look(const patch_finder *p, uint32_t a, uint32_t b);
 
+/* Returns how often a body contains a place with this winding number. A body that is compared with itself
+ * contains everything just once. For another body it is unknown where it buries itself, so its numbers count
+ * as they are. */
+double patch_times_within(const patch_finder *p, uint32_t body, int32_t number);
+
+/* ---- gaps of overlaps ------------------------------------------------------------------------------------- */
+
+/* The key of two bodies: the smaller one in the upper half. */
+static inline uint64_t key_of_bodies(uint32_t a, uint32_t b) {
+    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+/* The body of one of the two sheets of a curve. */
+static inline uint32_t curve_body(const named_surface *s, const cscd_curve *c, int k) {
+    return s->bodies != NULL && s->bodies->components != NULL ? s->bodies->components[c->components[k]]
+                                                              : c->objects[k];
+}
+
+/* The overlaps that have no volume, because a curve that bounds them is left out, wholly or in part: found by
+ * the pairs of triangles that are left out although they carry a piece, and by curves that end where one is
+ * missing. Begins with nothing but the context set. */
+typedef struct overlap_gaps {
+    cscd_context *context;
+    uint64_t *bodies, *spare; /* keys of bodies, ascending */
+    size_t count, capacity;
+} overlap_gaps;
+
+void overlap_gaps_free(overlap_gaps *g);
+
+/* Finds the pairs of bodies of which a piece of a curve between closed components is left out. False: no memory. */
+bool overlap_gaps_find(overlap_gaps *g, const surface_cuts *found, const left_out_pairs *left_out);
+
+/* Whether a curve is left out of the two bodies a <= b, or of one of them with itself. */
+bool overlap_gaps_have(const overlap_gaps *g, uint32_t a, uint32_t b);
+
 /* ---- copies of solids ---------------------------------------------------------------------------------- */
 
 /* Whether two bodies are copies of one solid. */

@@ -8,115 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- gaps ---------------------------------------------------------------------------------------------- */
-
-void left_out_pairs_free(left_out_pairs *p) {
-    if (p->context == NULL) return;
-    context_free(p->context, p->pairs);
-    *p = (left_out_pairs){.context = p->context};
-}
-
-void left_out_pairs_add(left_out_pairs *p, uint32_t a, uint32_t b) {
-    if (p->count == p->capacity) {
-        size_t larger = p->capacity == 0 ? 64 : 2 * p->capacity;
-        uint64_t *grown = context_grow(p->context, p->pairs, p->count, larger, sizeof *grown);
-        if (grown == NULL) {
-            p->out_of_memory = true;
-            return;
-        }
-        p->pairs = grown;
-        p->capacity = larger;
-    }
-    p->pairs[p->count++] = (uint64_t)a << 32 | b;
-}
-
-/* Finds the overlaps that have no volume, because a curve that bounds them is left out, wholly or in part: by
- * the pairs of triangles that are left out although they carry a piece, and by curves that end where one is
- * missing. */
-typedef struct overlap_gaps {
-    cscd_context *context;
-    uint64_t *bodies, *spare; /* pairs, the smaller one in the upper half, ascending */
-    size_t count, capacity;
-} overlap_gaps;
-
-static array_list list_of_gaps(overlap_gaps *g, size_t count) {
-    return (array_list){{ARRAY(g->bodies, count), ARRAY(g->spare, count)}};
-}
-
-static void free_gaps(overlap_gaps *g) {
-    if (g->context == NULL) return;
-    context_free_all(g->context, list_of_gaps(g, 0));
-    *g = (overlap_gaps){.context = g->context};
-}
-
-static uint64_t key_of_bodies(uint32_t a, uint32_t b) {
-    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-}
-
-static bool is_closed(const cscd_mesh *mesh, uint32_t triangle) {
-    return mesh->components[mesh->triangle_components[triangle]].closed_manifold;
-}
-
-static void add_left_out(overlap_gaps *g, const named_surface *s, const left_out_pairs *left_out) {
-    const cscd_mesh *mesh = s->mesh;
-    for (size_t i = 0; i < left_out->count; i++) {
-        uint32_t a = (uint32_t)(left_out->pairs[i] >> 32), b = (uint32_t)left_out->pairs[i];
-        curve_piece piece;
-        if (!is_closed(mesh, a) || !is_closed(mesh, b) || !curve_piece_of_pair(s, a, b, &piece)) continue;
-        g->bodies[g->count++] = key_of_bodies(surface_body(s, a), surface_body(s, b));
-    }
-}
-
-static uint32_t body_of_component(const named_surface *s, const cscd_curve *c, int k) {
-    return s->bodies != NULL && s->bodies->components != NULL ? s->bodies->components[c->components[k]]
-                                                              : c->objects[k];
-}
-
-static void add_open_curves(overlap_gaps *g, const named_surface *s, const curve_joiner *j) {
-    const cscd_mesh *mesh = s->mesh;
-    for (size_t i = 0; i < j->curve_count; i++) {
-        const cscd_curve *c = &j->curves[i];
-        if (c->start != CSCD_CURVE_END_LEFT_OUT && c->end != CSCD_CURVE_END_LEFT_OUT) continue;
-        if (mesh->components[c->components[0]].closed_manifold &&
-            mesh->components[c->components[1]].closed_manifold)
-            g->bodies[g->count++] = key_of_bodies(body_of_component(s, c, 0), body_of_component(s, c, 1));
-    }
-}
-
-/* Finds the pairs of bodies of which a piece of a curve between closed components is left out. False: no memory. */
-static bool find_gaps(overlap_gaps *g, const surface_cuts *found, const left_out_pairs *left_out) {
-    size_t most = left_out->count + found->curves->curve_count;
-    if (!memory_budget_take(found->budget, left_out->count,
-                            MEMORY_WHILE_DOUBLING * sizeof *left_out->pairs) ||
-        !memory_budget_take_all(found->budget, list_of_gaps(g, room_with_spare(most))))
-        return false;
-    if (!context_renew_all(g->context, list_of_gaps(g, room_with_spare(most)), &g->capacity, most))
-        return false;
-    g->count = 0;
-    add_left_out(g, found->surface, left_out);
-    add_open_curves(g, found->surface, found->curves);
-    sort_by_number(g->bodies, g->spare, g->count, sizeof *g->bodies);
-    return true;
-}
-
-static bool have_key(const overlap_gaps *g, uint64_t key) {
-    size_t low = 0, high = g->count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (g->bodies[middle] < key)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < g->count && g->bodies[low] == key;
-}
-
-/* Whether a curve is left out of the two bodies a <= b, or of one of them with itself. */
-static bool have_gap(const overlap_gaps *g, uint32_t a, uint32_t b) {
-    return have_key(g, key_of_bodies(a, b)) || have_key(g, key_of_bodies(a, a)) ||
-           have_key(g, key_of_bodies(b, b));
-}
-
 /* ---- overlaps ------------------------------------------------------------------------------------------ */
 
 /* A share of the overlap of two bodies; key: a in the upper half, b in the lower one. */
@@ -190,7 +81,7 @@ void overlap_finder_clear(overlap_finder *o) {
     context_free_all(context, list_of_slots(o, 0));
     context_free_all(context, list_of_overlaps(o, 0));
     triangle_cuts_free(&o->cuts);
-    free_gaps(&o->gaps);
+    overlap_gaps_free(&o->gaps);
     *o = empty_finder(context);
 }
 
@@ -260,14 +151,6 @@ static void add_own(overlap_work *work, uint32_t body, double area, double inver
                                     place.triangle, place.patch});
 }
 
-/* Returns how often a body contains a place with this winding number. A body that is compared with itself
- * contains everything just once. For another body it is unknown where it buries itself, so its numbers count
- * as they are. */
-static double times_within(const overlap_work *work, uint32_t body, int32_t number) {
-    if (!patch_bodies_look(work->found->patches, body, body)) return number;
-    return number >= 1 ? 1.0 : 0.0;
-}
-
 /* Open components have no volume. */
 static bool triangle_bounds(const overlap_work *work, uint32_t triangle) {
     return work->mesh->components[work->mesh->triangle_components[triangle]].closed_manifold;
@@ -310,7 +193,8 @@ static void add_patch(overlap_work *work, uint32_t index) {
                     w.number == 1 ? 1.0 : 0.0, place);
         else
             add_buried(work, patch->body, w.body, w.number >= 1 ? area : 0.0,
-                       patch->own == 0 ? times_within(work, w.body, w.number) : 0.0, place);
+                       patch->own == 0 ? patch_times_within(work->found->patches, w.body, w.number) : 0.0,
+                       place);
     }
 }
 
@@ -349,7 +233,8 @@ static void add_part(void *data, const cut_part *part) {
         if (slot == 0)
             share->bounding += number == 1 ? area : 0.0;
         else if (part->numbers[0] == 0)
-            share->bounding += area * times_within(m->work, m->cut->slot_bodies[slot], number);
+            share->bounding +=
+                area * patch_times_within(m->work->found->patches, m->cut->slot_bodies[slot], number);
     }
 }
 
@@ -438,7 +323,7 @@ static cscd_overlap sum_shares(const overlap_work *work, const overlap_share *sh
         sum.area_b += shares[i].area_b;
         sum.volume += flux_from(work, &shares[i], origin) / 3.0;
     }
-    if (have_gap(&work->finder->gaps, sum.a, sum.b)) sum.volume = (double)NAN;
+    if (overlap_gaps_have(&work->finder->gaps, sum.a, sum.b)) sum.volume = (double)NAN;
     return sum;
 }
 
@@ -463,7 +348,7 @@ cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, con
     if (!memory_budget_take_all(found->budget, list_of_patches(o, room_with_spare(p->patch_count))))
         return CSCD_OUT_OF_MEMORY;
     if (!reserve_list(o, list_of_patches, &o->patch_capacity, p->patch_count)) return CSCD_OUT_OF_MEMORY;
-    if (!find_gaps(&o->gaps, found, left_out)) return CSCD_OUT_OF_MEMORY;
+    if (!overlap_gaps_find(&o->gaps, found, left_out)) return CSCD_OUT_OF_MEMORY;
     add_whole_triangles(&work);
     for (size_t i = 0; i < p->patch_count && !work.out_of_memory; i++) add_patch(&work, (uint32_t)i);
     add_gaps(&work);

@@ -254,6 +254,11 @@ bool patch_bodies_look(const patch_finder *p, uint32_t body_a, uint32_t body_b) 
     return !(p->mesh->objects[a].obstacle && p->mesh->objects[b].obstacle);
 }
 
+double patch_times_within(const patch_finder *p, uint32_t body, int32_t number) {
+    if (!patch_bodies_look(p, body, body)) return number;
+    return number >= 1 ? 1.0 : 0.0;
+}
+
 static int compare_numbers(const void *a, const void *b) {
     uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return (x > y) - (x < y);

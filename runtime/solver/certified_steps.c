@@ -2,6 +2,7 @@
  * search, whose candidates serve every shorter step and every moment on it. */
 #include "runtime/solver/solver.h"
 #include "src/core/floating.h"
+#include "src/core/sort.h"
 #include "src/core/timer.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
@@ -365,6 +366,73 @@ static cscd_status check_rules(const cscd_line_search *line, const char *functio
 static bool more_covered(const cscd_line_search *line, double more) {
     double grown = max_of(line->detector->config.limit.distance - line->separation, 0.0);
     return grown + more <= line->covered;
+}
+
+/* ---- the list of candidates ---------------------------------------------------------------------------- */
+
+/* The pair of a kind that a candidate is, as a in the upper half and b in the lower one. False: it is of another kind. Points
+ * are edges behind all others, and the second ones of a pair. */
+static bool name_candidate(const cscd_mesh *mesh, cscd_contact_kind kind, const uint32_t pair[2],
+                           uint64_t *out) {
+    uint32_t a = pair[0], b = pair[1];
+    if (kind != CSCD_CONTACT_VF) {
+        const bool points = edge_is_point(mesh, a), point = edge_is_point(mesh, b);
+        if ((kind == CSCD_CONTACT_VV) != points || (kind == CSCD_CONTACT_EE) == point) return false;
+        if (points) a = mesh->edges[a][0];
+        if (point) b = mesh->edges[b][0];
+    }
+    if (a > b && (kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_VV)) {
+        const uint32_t kept = a;
+        a = b;
+        b = kept;
+    }
+    *out = (uint64_t)a << 32 | b;
+    return true;
+}
+
+/* Appends the candidates of one kind, each once, without those that are left out. */
+static size_t list_candidates(const cscd_line_search *line, cscd_contact_kind kind, size_t count) {
+    cscd_detector *d = line->detector;
+    const candidate_list *list =
+        &line->candidates.lists[kind == CSCD_CONTACT_VF ? CSCD_CONTACT_VF : CSCD_CONTACT_EE];
+    uint64_t *keys = d->results.candidates.keys;
+    cscd_candidate *items = d->results.candidates.items;
+    size_t found = 0;
+    for (size_t i = 0; i < list->count; i++)
+        found += name_candidate(d->mesh, kind, list->pairs[i], &keys[found]);
+    sort_by_number(keys, d->results.candidates.spare_keys, found, sizeof *keys);
+    for (size_t i = 0; i < found; i++) {
+        const uint32_t a = (uint32_t)(keys[i] >> 32), b = (uint32_t)keys[i];
+        if (i > 0 && keys[i] == keys[i - 1]) continue;
+        if (exclusions_cover(&d->config.exclusions, kind, a, b, NULL)) continue;
+        items[count++] = (cscd_candidate){kind, a, b};
+    }
+    return count;
+}
+
+static cscd_status give_candidates(cscd_line_search *line, cscd_candidates *out) {
+    static const cscd_contact_kind kinds[] = {CSCD_CONTACT_VF, CSCD_CONTACT_EE, CSCD_CONTACT_VV,
+                                              CSCD_CONTACT_EV};
+    cscd_detector *d = line->detector;
+    cscd_status status = check_begun(line, "cscd_line_search_candidates");
+    if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_candidates");
+    if (status != CSCD_OK) return status;
+    if (out == NULL)
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_candidates: out is NULL");
+    status = result_buffer_reserve(d->context, &d->results.candidates, cscd_line_search_candidate_count(line),
+                                   sizeof(cscd_candidate), sizeof(uint64_t));
+    if (status != CSCD_OK) return context_out_of_memory(d->context);
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) count = list_candidates(line, kinds[i], count);
+    *out = (cscd_candidates){d->results.candidates.items, count};
+    return CSCD_OK;
+}
+
+cscd_status cscd_line_search_candidates(cscd_line_search *line, cscd_candidates *out) {
+    if (line == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(line, &entry)) return entry.status;
+    return context_leave(&entry, give_candidates(line, out));
 }
 
 /* ---- moments ------------------------------------------------------------------------------------------- */

@@ -365,6 +365,12 @@ TEST(line_searches) {
     ours.begin(t.x0, t.x1, 1.2);
     assert_int_equal(cscd_line_search_begin(c, &t.v0, &t.v1, 1.2), CSCD_OK);
     assert_int_equal(ours.candidate_count(), cscd_line_search_candidate_count(c));
+    cscd_candidates pairs;
+    assert_int_equal(cscd_line_search_candidates(c, &pairs), CSCD_OK);
+    const cscd::candidates listed = ours.candidates();
+    assert_int_equal(listed.size(), pairs.count);
+    assert_true(listed.size() > 0 && listed.size() <= ours.candidate_count());
+    assert_memory_equal(listed.data(), pairs.items, pairs.count * sizeof *pairs.items);
     std::vector<float> reached(t.x0.size()), expected(t.x0.size());
     const cscd_mutable_view out = cscd::view_of(expected);
     ours.positions(0.25, reached);
@@ -380,6 +386,45 @@ TEST(line_searches) {
     assert_true(near.count > 0);
     assert_int_equal(error_of([&] { ours.find_near(0.25, 2.0); }).status(), CSCD_INVALID_ARGUMENT);
     cscd_line_search_destroy(c);
+}
+
+/* ---- measures and tetrahedra ---------------------------------------------------------------------------- */
+
+static void same_measures(const cscd::measures &found, const cscd_measures &expected) {
+    assert_int_equal(found.size(), expected.count);
+    assert_true(found.sum == expected.sum && found.unknown == expected.unknown);
+    assert_int_equal(cscd::gradients(found).size(), expected.gradient_count);
+    for (std::size_t i = 0; i < found.size(); i++)
+        assert_int_equal(cscd::gradients(found, found[i]).size(), expected.items[i].gradient_count);
+}
+
+TEST(measures) {
+    twins t;
+    std::vector<float> lower = t.x0;
+    for (std::size_t i = 2; i < lower.size() / 2; i += 3) lower[i] -= 0.4F;
+    const cscd_view x = cscd::view_of(std::as_const(lower));
+    cscd_measures expected;
+    assert_int_equal(cscd_detector_curve_lengths(t.c, &x, nullptr, &expected), CSCD_OK);
+    same_measures(t.ours.curve_lengths(lower), expected);
+    assert_int_equal(cscd_detector_overlap_volumes(t.c, &x, nullptr, &expected), CSCD_OK);
+    same_measures(t.ours.overlap_volumes(lower), expected);
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.stop_after = 1;
+    assert_int_equal(error_of([&] { t.ours.curve_lengths(lower, options); }).status(), CSCD_INVALID_ARGUMENT);
+}
+
+TEST(surfaces_of_tetrahedra) {
+    const cscd::context context;
+    const std::vector<std::array<std::uint32_t, 4>> two = {{1, 2, 3, 4}, {1, 3, 2, 6}};
+    const cscd::tet_surface surface(context, two, 7);
+    assert_int_equal(surface.triangle_count(), 6);
+    assert_int_equal(surface.vertex_count(), 5);
+    assert_int_equal(surface.triangles().size(), 18);
+    assert_int_equal(surface.vertices()[4], 6);
+    assert_int_equal(surface.tetrahedra()[5], 1);
+    const cscd::mesh mesh(context, {cscd::object_of_triangles(surface.vertex_count(), surface.triangles())});
+    assert_true(mesh.component(0).closed_manifold);
+    assert_int_equal(error_of([&] { cscd::tet_surface(context, two, 6); }).status(), CSCD_INVALID_MESH);
 }
 
 } // namespace

@@ -88,6 +88,38 @@ static const proof_call context_made = {"context_create", PROOF_CREATES, create_
 static const proof_call mesh_made = {"mesh_create", PROOF_CREATES, create_mesh, keep_mesh};
 static const proof_call loose_made = {"mesh_create", PROOF_CREATES, create_loose, keep_mesh};
 
+/* ---- surfaces of tetrahedra ----------------------------------------------------------------------------- */
+
+/* Pairs of tetrahedra with a face in common, each of which has an edge with the next pair. */
+static uint32_t tetrahedra[SCENE_TRIANGLES_MAX * 2][4];
+
+static cscd_status create_tet_surface(proof *p) {
+    const uint32_t count = p->large ? SCENE_TRIANGLES_MAX : 20;
+    for (uint32_t t = 0; t < count; t++) {
+        const uint32_t first = 3 * t, all[5] = {first, first + 1, first + 2, first + 3, first + 4};
+        const uint32_t pair[2][4] = {{all[0], all[1], all[2], all[3]}, {all[0], all[2], all[1], all[4]}};
+        memcpy(tetrahedra[(size_t)t * 2], pair, sizeof pair);
+    }
+    return cscd_tet_surface_create(p->context, tetrahedra[0], (size_t)count * 2, 3 * count + 2,
+                                   &p->answer.tet_surface);
+}
+
+static void keep_tet_surface(proof *p) {
+    const cscd_tet_surface_arrays s = cscd_tet_surface_get(p->answer.tet_surface);
+    p->own = p->answer.tet_surface;
+    proof_add_items(p, s.triangles, (size_t)s.triangle_count * 3, sizeof *s.triangles);
+    proof_add_items(p, s.tetrahedra, s.triangle_count, sizeof *s.tetrahedra);
+    proof_add_items(p, s.vertices, s.vertex_count, sizeof *s.vertices);
+}
+
+static void close_tet_surface(proof *p) {
+    cscd_tet_surface_destroy(p->own);
+    p->own = NULL;
+}
+
+static const proof_call tet_surface_made = {"tet_surface_create", PROOF_CREATES, create_tet_surface,
+                                            keep_tet_surface};
+
 /* ---- plans ---------------------------------------------------------------------------------------------- */
 
 /* A dumbbell, which with the seed 1 is soft at its rod. */
@@ -185,6 +217,7 @@ static const proof_row rows[] = {
      .family = SCENE_TWO_SPHERES},
     {"mesh", {&mesh_made}, .family = SCENE_SOUP, .seed = 3, MESH},
     {"mesh_loose", {&loose_made}, MESH},
+    {"tet_surface", {&tet_surface_made}, NULL, close_tet_surface, MESH},
     {"mesh_change", {&change_made}, open_changing, .seed = 3, MESH},
     {"mesh_change_4", {&change_made}, open_changing, .seed = 4, MESH},
     {"mesh_change_5", {&change_made}, open_changing, .seed = 5, MESH},

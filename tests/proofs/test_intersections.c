@@ -1,4 +1,5 @@
-/* What every call promises (tests/support/proofs/proof.h), of cscd_detector_find_intersections. */
+/* What every call promises (tests/support/proofs/proof.h), of cscd_detector_find_intersections and of the volumes and lengths of what it
+ * finds. */
 #include "tests/support/intersections/body_rig.h"
 #include "tests/support/proofs/openings.h"
 #include "tests/support/test.h"
@@ -36,6 +37,24 @@ static cscd_status count_pairs(proof *p) {
     return find_pairs(p, options);
 }
 
+static cscd_status find_volumes(proof *p) {
+    cscd_view x;
+    return cscd_detector_overlap_volumes(p->detector, at_moment(p, 2, &x), NULL, &p->answer.measures);
+}
+
+static cscd_status find_lengths(proof *p) {
+    cscd_view x;
+    return cscd_detector_curve_lengths(p->detector, at_moment(p, 2, &x), NULL, &p->answer.measures);
+}
+
+static void read_measures(proof *p) {
+    const cscd_measures *m = &p->answer.measures;
+    proof_add_items(p, m->items, m->count, sizeof *m->items);
+    proof_add_items(p, m->gradients, m->gradient_count, sizeof *m->gradients);
+    proof_add(p, &m->sum, sizeof m->sum);
+    proof_add(p, &m->unknown, sizeof m->unknown);
+}
+
 static cscd_status set_part(proof *p) {
     static const uint32_t labels[SCENE_TRIANGLES_MAX];
     return cscd_detector_set_parts(p->detector, labels, 1);
@@ -45,6 +64,8 @@ static const proof_call everything = {"detector_find_intersections", PROOF_ASKS,
 static const proof_call by_part = {"detector_find_intersections", PROOF_ASKS, find_by_part, read_pairs};
 static const proof_call first = {"detector_find_intersections", PROOF_ASKS, find_first, read_pairs};
 static const proof_call counted = {"detector_find_intersections", PROOF_ASKS, count_pairs, read_pairs};
+static const proof_call volumes = {"detector_overlap_volumes", PROOF_ASKS, find_volumes, read_measures};
+static const proof_call lengths = {"detector_curve_lengths", PROOF_ASKS, find_lengths, read_measures};
 static const proof_call one_part = {"detector_set_parts", PROOF_CHANGES, set_part, NULL};
 
 /* ---- bodies --------------------------------------------------------------------------------------------- */
@@ -141,13 +162,14 @@ static void open_post(proof *p) {
 
 static const proof_row rows[] = {
     {"spheres", {&everything, &first, &counted}, open_detector, .family = SCENE_TWO_SPHERES},
-    {"sheet", {&everything, &step_back}, open_detector, .family = SCENE_FOLDED_SHEET, .seed = 7},
+    {"sheet", {&everything, &lengths, &step_back}, open_detector, .family = SCENE_FOLDED_SHEET, .seed = 7},
+    {"measures", {&volumes, &lengths}, open_detector, .family = SCENE_TWO_SPHERES},
     {"ignore", {&everything, &first, &counted}, open_ignoring, .family = SCENE_TWO_SPHERES},
-    {"boxes", {&everything, &by_part}, open_boxes, .seed = 0},
-    {"gaps", {&everything}, open_gaps, .seed = 0},
+    {"boxes", {&everything, &volumes, &by_part, &lengths}, open_boxes, .seed = 0},
+    {"gaps", {&volumes, &everything, &lengths}, open_gaps, .seed = 0},
     {"seams", {&everything}, open_seams, .seed = 0},
     {"shells", {&one_part, &by_part, &everything}, open_shells, .seed = 0},
-    {"post", {&everything}, open_post, .seed = 0},
+    {"post", {&lengths, &everything, &volumes}, open_post, .seed = 0},
 };
 
 PROOFS(rows)

@@ -123,6 +123,14 @@ static void read_candidates(proof *p) {
     proof_add(p, &count, sizeof count);
 }
 
+static cscd_status list_candidates(proof *p) {
+    return cscd_line_search_candidates(p->line, &p->answer.candidates);
+}
+
+static void read_list(proof *p) {
+    proof_add_items(p, p->answer.candidates.items, p->answer.candidates.count, sizeof(cscd_candidate));
+}
+
 static cscd_status write_positions(proof *p) {
     cscd_mutable_view x;
     return cscd_line_search_positions(p->line, 0.3, reached_of(p, &x));
@@ -140,6 +148,7 @@ static cscd_status find_on_line(proof *p) {
 static const proof_call line_create = {"line_search_create", PROOF_CREATES, create_line, keep_line};
 static const proof_call line_begin = {"line_search_begin", PROOF_BEGINS, begin_line, read_candidates};
 static const proof_call line_again = {"line_search_begin", PROOF_BEGINS, begin_short, read_candidates};
+static const proof_call line_list = {"line_search_candidates", PROOF_ASKS, list_candidates, read_list};
 static const proof_call line_positions = {"line_search_positions", PROOF_ASKS, write_positions, read_reached};
 static const proof_call line_step = {"line_search_max_step", PROOF_ASKS, go_along, read_step};
 static const proof_call line_near = {"line_search_find_near", PROOF_ASKS, find_on_line, read_near};
@@ -171,14 +180,14 @@ static void open_loose(proof *p) {
 #define ALL_CALLS                                                                                            \
     {                                                                                                        \
         &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
-            &safe_motion, &line_positions, &line_step, &line_near, &step_back                                \
+            &safe_motion, &line_list, &line_positions, &line_step, &line_near, &step_back                    \
     }
 #define FAMILY_CALLS                                                                                         \
     { &step_first, &near_pairs, &near_unique, &step_second, &step_back }
 #define LOOSE_CALLS                                                                                          \
     {                                                                                                        \
         &rest, &line_create, &line_begin, &near_pairs, &near_unique, &bounds, &max_step, &truncation,        \
-            &safe_motion, &line_near, &step_first, &step_back                                                \
+            &safe_motion, &line_list, &line_near, &step_first, &step_back                                    \
     }
 
 static const proof_row rows[] = {
@@ -189,7 +198,7 @@ static const proof_row rows[] = {
     {"truncation", {&truncation}, open_detector, .family = SCENE_TWO_SPHERES},
     {"safe motion", {&safe_motion}, open_detector, .family = SCENE_TWO_SPHERES},
     {"line",
-     {&line_create, &line_begin, &line_near, &line_step, &line_again},
+     {&line_create, &line_begin, &line_list, &line_near, &line_step, &line_again},
      open_detector,
      .family = SCENE_TWO_SPHERES},
     {"single", ALL_CALLS, open_detector, .family = SCENE_TWO_SPHERES, .method = CSCD_METHOD_SINGLE},

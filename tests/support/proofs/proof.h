@@ -82,6 +82,9 @@ typedef struct proof {
         cscd_energy_sum energy_sum;
         cscd_contacts contacts;
         cscd_intersections pairs;
+        cscd_measures measures;
+        cscd_candidates candidates;
+        cscd_tet_surface *tet_surface;
         cscd_proximities near;
         cscd_free_step step;
         cscd_displacement_bounds bounds;
