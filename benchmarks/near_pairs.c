@@ -21,20 +21,20 @@ static const uint32_t sizes[] = {5000, 20000};
 
 /* ---- scenes ---------------------------------------------------------------------------------------------- */
 
-typedef struct surface {
+typedef struct draped_sheet {
     double *x;
     uint32_t *triangles, vertex_count, triangle_count;
-} surface;
+} draped_sheet;
 
-static void free_surface(surface *s) {
+static void free_surface(draped_sheet *s) {
     free(s->x);
     free(s->triangles);
 }
 
 /* A sheet of squares of length 1, bent over a ball of this radius, or wavy in a plane. False: no memory. */
-static bool make_sheet(uint32_t triangle_count, double radius, surface *out) {
+static bool make_sheet(uint32_t triangle_count, double radius, draped_sheet *out) {
     const uint32_t n = (uint32_t)sqrt(triangle_count / 2.0), row = n + 1;
-    *out = (surface){.vertex_count = row * row, .triangle_count = 2 * n * n};
+    *out = (draped_sheet){.vertex_count = row * row, .triangle_count = 2 * n * n};
     out->x = malloc((size_t)out->vertex_count * 3 * sizeof *out->x);
     out->triangles = malloc((size_t)out->triangle_count * 3 * sizeof *out->triangles);
     if (out->x == NULL || out->triangles == NULL) return false;
@@ -71,7 +71,7 @@ static void write_row(json *out, const char *task, uint32_t triangles, size_t pa
     json_end_object(out);
 }
 
-static cscd_status time_near(cscd_detector *d, const surface *s, cscd_near_form form, uint32_t repeats,
+static cscd_status time_near(cscd_detector *d, const draped_sheet *s, cscd_near_form form, uint32_t repeats,
                              json *out) {
     double least = HUGE_VAL;
     cscd_proximities found = {.count = 0};
@@ -92,7 +92,7 @@ static cscd_status time_near(cscd_detector *d, const surface *s, cscd_near_form 
 }
 
 /* Pushes the sheet, the first object, down and aside, and writes what the call has to say. */
-static cscd_status time_truncate(cscd_detector *d, const surface *both, uint32_t moving, double radius,
+static cscd_status time_truncate(cscd_detector *d, const draped_sheet *both, uint32_t moving, double radius,
                                  uint32_t repeats, json *out) {
     double least = HUGE_VAL;
     cscd_truncation found = {.near_count = 0};
@@ -121,8 +121,8 @@ static cscd_status time_truncate(cscd_detector *d, const surface *both, uint32_t
 
 /* ---- all of it ------------------------------------------------------------------------------------------- */
 
-static cscd_status open_detector(const surface *s, uint32_t first, uint32_t first_triangles, uint32_t threads,
-                                 cscd_detector **out) {
+static cscd_status open_detector(const draped_sheet *s, uint32_t first, uint32_t first_triangles,
+                                 uint32_t threads, cscd_detector **out) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_context_options options = cscd_context_defaults();
@@ -142,7 +142,7 @@ static cscd_status open_detector(const surface *s, uint32_t first, uint32_t firs
 }
 
 static cscd_status run_sheet(uint32_t triangle_count, const bench_options *o, json *out) {
-    surface s;
+    draped_sheet s;
     cscd_detector *detector = NULL;
     const uint32_t repeats = o->quick ? 2 : REPEATS;
     cscd_status status = make_sheet(triangle_count, 0.0, &s) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -156,8 +156,9 @@ static cscd_status run_sheet(uint32_t triangle_count, const bench_options *o, js
 }
 
 /* Both sheets in one array, the ball's behind the other's. */
-static bool join_sheets(const surface *a, const surface *b, surface *out) {
-    *out = (surface){NULL, NULL, a->vertex_count + b->vertex_count, a->triangle_count + b->triangle_count};
+static bool join_sheets(const draped_sheet *a, const draped_sheet *b, draped_sheet *out) {
+    *out =
+        (draped_sheet){NULL, NULL, a->vertex_count + b->vertex_count, a->triangle_count + b->triangle_count};
     out->x = malloc((size_t)out->vertex_count * 3 * sizeof *out->x);
     out->triangles = malloc((size_t)out->triangle_count * 3 * sizeof *out->triangles);
     if (out->x == NULL || out->triangles == NULL) return false;
@@ -173,7 +174,7 @@ static bool join_sheets(const surface *a, const surface *b, surface *out) {
 }
 
 static cscd_status run_draped(uint32_t triangle_count, const bench_options *o, json *out) {
-    surface cloth = {NULL, NULL, 0, 0}, ball = {NULL, NULL, 0, 0}, both = {NULL, NULL, 0, 0};
+    draped_sheet cloth = {NULL, NULL, 0, 0}, ball = {NULL, NULL, 0, 0}, both = {NULL, NULL, 0, 0};
     cscd_detector *detector = NULL;
     const double radius = 0.5 * sqrt(triangle_count / 2.0);
     bool made = make_sheet(triangle_count, radius + 0.1, &cloth) &&

@@ -32,20 +32,20 @@ static const char help[] =
     "rested. Share: the mean of what vertices made of their ways, along them.\n"
     "\n";
 
-typedef struct trial {
+typedef struct driver_trial {
     response_scene *scene;
     cscd_mesh *mesh;
     cscd_detector *detector, *judge;
     double *reached;
     double separation;
-} trial;
+} driver_trial;
 
-typedef struct tally {
+typedef struct driver_tally {
     double ms, worst_ms, shares, least, response[CSCD_RESPONSE_COUNT];
     uint32_t crossing, frozen, frames;
     uint64_t pushed, rounds;
     double late; /* frames by which what has a given motion is late */
-} tally;
+} driver_tally;
 
 /* The time of this process: others beside it do not count. */
 static double cpu_now_ms(void) {
@@ -81,7 +81,7 @@ static double longest_motion(const response_scene *s) {
 }
 
 /* The response of docs/solver/first-contact.md as it was before cscd_detector_make_safe. */
-static void push_apart(const trial *t, const cscd_contact *c, double *x) {
+static void push_apart(const driver_trial *t, const cscd_contact *c, double *x) {
     double weights[4], gap = 0.0, mobility = 0.0;
     cscd_stencil_weights(c->kind, c->u, c->v, weights);
     for (int i = 0; i < 4; i++) {
@@ -95,9 +95,10 @@ static void push_apart(const trial *t, const cscd_contact *c, double *x) {
 }
 
 /* Four rounds of pushing, and the longest step from there. */
-static cscd_status respond_and_step(trial *t, int rounds, double *obstacle_share) {
+static cscd_status respond_and_step(driver_trial *t, int rounds, double *obstacle_share) {
     response_scene *s = t->scene;
-    const cscd_view *x0 = CSCD_DOUBLES(s->x, s->vertex_count), *x1 = CSCD_DOUBLES(t->reached, s->vertex_count);
+    const cscd_view *x0 = CSCD_DOUBLES(s->x, s->vertex_count),
+                    *x1 = CSCD_DOUBLES(t->reached, s->vertex_count);
     cscd_free_step step = {.fraction = 1.0};
     for (int round = 0; round < rounds; round++) {
         cscd_contacts found;
@@ -106,24 +107,24 @@ static cscd_status respond_and_step(trial *t, int rounds, double *obstacle_share
         if (found.count == 0) break;
         for (size_t i = 0; i < found.count; i++) push_apart(t, &found.items[i], t->reached);
     }
-    cscd_status status = cscd_detector_max_step(t->detector, x0, x1,
-                                                CSCD_MUTABLE_DOUBLES(t->reached, s->vertex_count), &step);
+    cscd_status status =
+        cscd_detector_max_step(t->detector, x0, x1, CSCD_MUTABLE_DOUBLES(t->reached, s->vertex_count), &step);
     *obstacle_share = step.fraction;
     return status;
 }
 
-static cscd_status truncate_to(trial *t, double radius, double *obstacle_share) {
+static cscd_status truncate_to(driver_trial *t, double radius, double *obstacle_share) {
     response_scene *s = t->scene;
     cscd_truncation cut;
-    cscd_status status = cscd_detector_truncate(
-        t->detector, CSCD_DOUBLES(s->x, s->vertex_count), CSCD_DOUBLES(t->reached, s->vertex_count), radius,
-        CSCD_MUTABLE_DOUBLES(t->reached, s->vertex_count), &cut);
+    cscd_status status = cscd_detector_truncate(t->detector, CSCD_DOUBLES(s->x, s->vertex_count),
+                                                CSCD_DOUBLES(t->reached, s->vertex_count), radius,
+                                                CSCD_MUTABLE_DOUBLES(t->reached, s->vertex_count), &cut);
     if (status == CSCD_OK) *obstacle_share = cut.obstacle_fraction;
     return status;
 }
 
 /* Obstacles that cannot get through go back as a whole, and all others have their way once more. */
-static cscd_status truncate_motion(trial *t, double *obstacle_share) {
+static cscd_status truncate_motion(driver_trial *t, double *obstacle_share) {
     response_scene *s = t->scene;
     size_t size = 3 * (size_t)s->vertex_count;
     double radius = 2.0001 * longest_motion(s);
@@ -139,7 +140,7 @@ static cscd_status truncate_motion(trial *t, double *obstacle_share) {
     return status;
 }
 
-static cscd_status make_safe(trial *t, double *obstacle_share, tally *sum) {
+static cscd_status make_safe(driver_trial *t, double *obstacle_share, driver_tally *sum) {
     response_scene *s = t->scene;
     double friction[RESPONSE_OBJECTS_MAX];
     for (int i = 0; i < RESPONSE_OBJECTS_MAX; i++) friction[i] = s->friction;
@@ -147,9 +148,9 @@ static cscd_status make_safe(trial *t, double *obstacle_share, tally *sum) {
     options.inverse_masses = s->inverse_masses;
     options.friction = friction;
     cscd_safe_motion safe;
-    cscd_status status = cscd_detector_make_safe(
-        t->detector, CSCD_DOUBLES(s->x, s->vertex_count), CSCD_DOUBLES(s->target, s->vertex_count), &options,
-        CSCD_MUTABLE_DOUBLES(t->reached, s->vertex_count), &safe);
+    cscd_status status = cscd_detector_make_safe(t->detector, CSCD_DOUBLES(s->x, s->vertex_count),
+                                                 CSCD_DOUBLES(s->target, s->vertex_count), &options,
+                                                 CSCD_MUTABLE_DOUBLES(t->reached, s->vertex_count), &safe);
     if (status != CSCD_OK) return status;
     *obstacle_share = safe.obstacle_share;
     sum->pushed += safe.pushed;
@@ -159,7 +160,7 @@ static cscd_status make_safe(trial *t, double *obstacle_share, tally *sum) {
     return CSCD_OK;
 }
 
-static cscd_status drive(trial *t, driver by, double *obstacle_share, tally *sum) {
+static cscd_status drive_motion(driver_trial *t, driver by, double *obstacle_share, driver_tally *sum) {
     *obstacle_share = 1.0;
     memcpy(t->reached, t->scene->target, 3 * (size_t)t->scene->vertex_count * sizeof(double));
     switch (by) {
@@ -176,13 +177,13 @@ static cscd_status drive(trial *t, driver by, double *obstacle_share, tally *sum
     }
 }
 
-static cscd_status run_frame(trial *t, driver by, tally *sum) {
+static cscd_status run_frame(driver_trial *t, driver by, driver_tally *sum) {
     response_scene *s = t->scene;
     double obstacle_share, least, begin;
     cscd_contacts found;
     response_scene_aim(s);
     begin = cpu_now_ms();
-    cscd_status status = drive(t, by, &obstacle_share, sum);
+    cscd_status status = drive_motion(t, by, &obstacle_share, sum);
     double ms = cpu_now_ms() - begin;
     if (status != CSCD_OK) return status;
     sum->ms += ms;
@@ -201,9 +202,9 @@ static cscd_status run_frame(trial *t, driver by, tally *sum) {
     return CSCD_OK;
 }
 
-static cscd_status open_trial(response_scene *s, cscd_context *context, trial *t) {
+static cscd_status open_trial(response_scene *s, cscd_context *context, driver_trial *t) {
     cscd_object_desc objects[RESPONSE_OBJECTS_MAX];
-    *t = (trial){.scene = s, .separation = 0.05 * s->spacing};
+    *t = (driver_trial){.scene = s, .separation = 0.05 * s->spacing};
     for (uint32_t o = 0; o < s->object_count; o++) {
         objects[o] = cscd_object_of_triangles(s->objects[o].vertex_count, s->objects[o].triangle_count,
                                               s->objects[o].triangles);
@@ -220,7 +221,7 @@ static cscd_status open_trial(response_scene *s, cscd_context *context, trial *t
     return status;
 }
 
-static void close_trial(trial *t) {
+static void close_trial(driver_trial *t) {
     free(t->reached);
     cscd_detector_destroy(t->detector);
     cscd_detector_destroy(t->judge);
@@ -228,17 +229,18 @@ static void close_trial(trial *t) {
 }
 
 /* The shares of vertices by what they needed. */
-static void report_responses(const tally *sum, json *out) {
+static void report_responses(const driver_tally *sum, json *out) {
     static const char *const names[CSCD_RESPONSE_COUNT] = {"free", "stopped", "zone", "truncated", "held"};
     for (int i = 0; i < CSCD_RESPONSE_COUNT; i++) json_number(out, names[i], sum->response[i] / FRAMES);
     json_number(out, "pushed", (double)sum->pushed / FRAMES);
     json_number(out, "rounds", (double)sum->rounds / FRAMES);
 }
 
-static void report(response_kind kind, const response_scene *s, driver by, const tally *sum, json *out) {
-    printf("%-8s %9u %-10s %8u %7u %7.3f %7.3f %6.1f %9.2f %9.2f\n", response_kind_name(kind), s->triangle_count,
-           driver_names[by], sum->crossing, sum->frozen, sum->shares / FRAMES, sum->least, sum->late,
-           sum->ms / FRAMES, sum->worst_ms);
+static void report_trial(response_kind kind, const response_scene *s, driver by, const driver_tally *sum,
+                         json *out) {
+    printf("%-8s %9u %-10s %8u %7u %7.3f %7.3f %6.1f %9.2f %9.2f\n", response_kind_name(kind),
+           s->triangle_count, driver_names[by], sum->crossing, sum->frozen, sum->shares / FRAMES, sum->least,
+           sum->late, sum->ms / FRAMES, sum->worst_ms);
     if (out->file == NULL) return;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -260,14 +262,14 @@ static void report(response_kind kind, const response_scene *s, driver by, const
 static bool run_trial(response_kind kind, uint32_t triangle_count, driver by, cscd_context *context,
                       json *out, io_error *error) {
     response_scene scene;
-    trial t;
-    tally sum = {.least = 1.0};
+    driver_trial t;
+    driver_tally sum = {.least = 1.0};
     if (!response_scene_make(kind, triangle_count, &scene, error)) return false;
     cscd_status status = open_trial(&scene, context, &t);
     for (int frame = 0; status == CSCD_OK && frame < FRAMES; frame++) status = run_frame(&t, by, &sum);
     bool good = status == CSCD_OK;
     if (good)
-        report(kind, &scene, by, &sum, out);
+        report_trial(kind, &scene, by, &sum, out);
     else
         io_fail(error, "%s by %s, frame %u: %s: %s", response_kind_name(kind), driver_names[by], sum.frames,
                 cscd_status_string(status), cscd_context_detail(context));
@@ -285,8 +287,8 @@ static bool run_all(const bench_options *o, json *out, io_error *error) {
     bool good = true;
     for (uint32_t i = 0; good && i < o->size_count * RESPONSE_KIND_COUNT * DRIVER_COUNT; i++) {
         uint32_t kind = i / DRIVER_COUNT % RESPONSE_KIND_COUNT, by = i % DRIVER_COUNT;
-        good = run_trial((response_kind)kind, o->sizes[i / DRIVER_COUNT / RESPONSE_KIND_COUNT], (driver)by, context,
-                         out, error);
+        good = run_trial((response_kind)kind, o->sizes[i / DRIVER_COUNT / RESPONSE_KIND_COUNT], (driver)by,
+                         context, out, error);
     }
     cscd_context_destroy(context);
     return good;

@@ -26,7 +26,7 @@ static body *add_object(response_scene *s) {
     return &s->objects[s->object_count++];
 }
 
-static void lift(body *b, double height) {
+static void lift_body(body *b, double height) {
     for (uint32_t v = 0; v < b->vertex_count; v++) b->positions[3 * (size_t)v + 2] += height;
 }
 
@@ -79,14 +79,14 @@ static bool add_ball(response_scene *s, uint32_t triangle_count, double radius, 
                      io_error *error) {
     body *ball = add_object(s);
     if (!garment_add_ball(ball, triangle_count, radius, error)) return false;
-    lift(ball, height);
+    lift_body(ball, height);
     return true;
 }
 
 static void add_plate(response_scene *s, double reach, double height) {
     body *plate = add_object(s);
     garment_add_box(plate, reach);
-    lift(plate, height);
+    lift_body(plate, height);
 }
 
 static void add_sheets(response_scene *s, uint32_t count, uint32_t triangle_count, double height,
@@ -99,7 +99,7 @@ static void add_sheets(response_scene *s, uint32_t count, uint32_t triangle_coun
             p[0] = cos(turn) * x - sin(turn) * p[1];
             p[1] = sin(turn) * x + cos(turn) * p[1];
         }
-        lift(sheet, height + gap * i);
+        lift_body(sheet, height + gap * i);
     }
 }
 
@@ -135,7 +135,7 @@ static bool make_objects(response_scene *s, uint32_t triangle_count, io_error *e
         body *bag = add_object(s);
         garment_add_bag(bag, columns, columns, 0.8, 0.8, 0.1);
         s->seams = garment_bag_seams(columns, columns, &s->seam_count);
-        lift(bag, 0.3);
+        lift_body(bag, 0.3);
         s->free_object_count = s->object_count;
         return add_ball(s, 1280, 0.25, 0.0, error);
     }
@@ -262,7 +262,7 @@ void response_scene_free(response_scene *s) {
 
 /* ---- one frame ----------------------------------------------------------------------------------------- */
 
-static double ramp(double time, double begin, double seconds) {
+static double ramp_share(double time, double begin, double seconds) {
     return fmax(0.0, fmin((time - begin) / seconds, 1.0));
 }
 
@@ -280,13 +280,13 @@ static void place_given(const response_scene *s, double time, double *x) {
         double *to = x + 3 * (size_t)v, side = s->roles[v] == ROLE_FIRST_GRIP ? -1.0 : 1.0;
         if (v < s->free_count && s->roles[v] == ROLE_FREE) continue;
         memcpy(to, from, sizeof(double[3]));
-        if (s->kind == RESPONSE_TWIST) turn_about_z(from, 2.0 * pi * ramp(time, 0.6, 2.4), to);
-        if (s->kind == RESPONSE_PRESS && from[2] > 1.0) to[2] -= 0.9 * ramp(time, 0.2, 2.0);
+        if (s->kind == RESPONSE_TWIST) turn_about_z(from, 2.0 * pi * ramp_share(time, 0.6, 2.4), to);
+        if (s->kind == RESPONSE_PRESS && from[2] > 1.0) to[2] -= 0.9 * ramp_share(time, 0.2, 2.0);
         if (s->kind == RESPONSE_SLEEVE) {
-            turn_about_z(from, side * 1.5 * pi * ramp(time, 0.0, 2.5), to);
-            to[2] -= side * 0.15 * ramp(time, 0.0, 2.5);
+            turn_about_z(from, side * 1.5 * pi * ramp_share(time, 0.0, 2.5), to);
+            to[2] -= side * 0.15 * ramp_share(time, 0.0, 2.5);
         }
-        if (s->kind == RESPONSE_KNOT) to[0] += side * 1.5 * ramp(time, 0.0, 3.0);
+        if (s->kind == RESPONSE_KNOT) to[0] += side * 1.5 * ramp_share(time, 0.0, 3.0);
     }
 }
 
@@ -329,7 +329,7 @@ static void solve_spring(const response_scene *s, const response_spring *spring,
     vec3_add_scaled(b, -share * s->inverse_masses[spring->b], between);
 }
 
-static void sew(const response_scene *s, double *x) {
+static void sew_seams(const response_scene *s, double *x) {
     for (uint32_t i = 0; i < s->seam_count; i++) {
         double *a = x + 3 * (size_t)s->seams[2 * i], *b = x + 3 * (size_t)s->seams[2 * i + 1];
         for (int k = 0; k < 3; k++) a[k] = b[k] = a[k] == b[k] ? a[k] : 0.5 * (a[k] + b[k]);
@@ -350,7 +350,7 @@ void response_scene_aim(response_scene *s) {
     place_given(s, s->clock + s->frame_seconds, x);
     for (int pass = 0; pass < SOLVER_PASSES; pass++) {
         for (uint32_t i = 0; i < s->spring_count; i++) solve_spring(s, &s->springs[i], x);
-        sew(s, x);
+        sew_seams(s, x);
     }
 }
 

@@ -222,8 +222,8 @@ typedef struct cscd_truncation {
 
 /* Moves each vertex from x0 towards x1 as far as planes between near pairs allow (Divide and Truncate, Chen
  * et al. 2026). Pairs at most search_radius, a length above 0, farther apart than min_separation have a
- * plane, and their vertices keep to their sides. No vertex goes farther than half of search_radius; twice the
- * longest motion stops none. Obstacles come first. The vertices of a seam go the same share. Motions are
+ * plane where their motions could bring them together, and their vertices keep to their sides. No vertex goes
+ * farther than half of search_radius; twice the longest motion stops none. Obstacles come first. The vertices of a seam go the same share. Motions are
  * shortened, not turned.
  *
  * Pairs without a common vertex that are apart at x0 stay apart: farther than min_separation if they are that

@@ -27,9 +27,9 @@ from .results import (CONTACT_KINDS, INTERSECTION_KINDS, RESPONSES, Contacts, Ev
 __version__: str = _library.cscd_version_string().decode()
 
 __all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Energy", "EnergySum",
-           "Error", "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact", "Intersections",
-           "LineSearch", "ListTooLong", "Measures", "Mesh", "PairContacts", "PairDistances", "PartPairs", "Plan",
-           "Points", "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene", "TetSurface", "Wires", "__version__",
-           "contacts",
-           "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay",
-           "self_intersecting_faces", "self_intersections", "tet_surface", "write_report"]
+           "Error", "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact",
+           "Intersections", "LineSearch", "ListTooLong", "Measures", "Mesh", "PairContacts", "PairDistances",
+           "PartPairs", "Plan", "Points", "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene",
+           "TetSurface", "Wires", "__version__", "contacts", "intersections", "is_self_intersecting", "pairs_near",
+           "pairs_step", "read", "replay", "self_intersecting_faces", "self_intersections", "tet_surface",
+           "write_report"]

@@ -104,7 +104,7 @@ void response_take(contact_response *r, const cscd_contact *contacts, size_t cou
 /* ---- impulses ------------------------------------------------------------------------------------------ */
 
 /* Friction takes away what slides, as far as the impulse along the normal lets it. */
-static void rub(contact_stop *stop, const double motion[3], double approach, double change[3]) {
+static void rub_points(contact_stop *stop, const double motion[3], double approach, double change[3]) {
     double wanted[3];
     for (int k = 0; k < 3; k++)
         wanted[k] = stop->rubbed[k] - (motion[k] + approach * stop->normal[k]) / stop->mobility;
@@ -126,7 +126,7 @@ static bool solve_stop(const contact_response *r, contact_stop *stop) {
     double pushed = max_of(stop->pushed + (approach - stop->goal) / stop->mobility, 0.0);
     for (int k = 0; k < 3; k++) change[k] = (pushed - stop->pushed) * stop->normal[k];
     stop->pushed = pushed;
-    if (stop->friction > 0.0) rub(stop, motion, approach, change);
+    if (stop->friction > 0.0) rub_points(stop, motion, approach, change);
     for (int i = 0; i < 4; i++)
         add_scaled(r->shift + (size_t)stop->vertices[i] * 3,
                    r->mobilities[stop->vertices[i]] * stop->weights[i], change);

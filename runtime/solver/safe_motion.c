@@ -261,7 +261,7 @@ static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found
 }
 
 /* Responds until no contact is left, or no round. */
-static cscd_status respond(safe_work *w, bool *free) {
+static cscd_status respond_in_rounds(safe_work *w, bool *free) {
     cscd_contacts found;
     for (uint32_t round = 0; round < ROUNDS; round++) {
         if (round == STOP_ROUNDS) response_begin_zones(&w->response);
@@ -407,7 +407,7 @@ static cscd_status find_safe_motion(safe_work *w) {
     cscd_detector *d = w->detector;
     bool free = false;
     begin_work(w);
-    cscd_status status = respond(w, &free);
+    cscd_status status = respond_in_rounds(w, &free);
     if (status == CSCD_OK && !free) status = truncate_rest(w);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return status;
