@@ -32,13 +32,13 @@ static const char help[] =
     "rested. Share: the mean of what vertices made of their ways, along them.\n"
     "\n";
 
-typedef struct driver_trial {
+typedef struct response_trial {
     response_scene *scene;
     cscd_mesh *mesh;
     cscd_detector *detector, *judge;
     double *reached;
     double separation;
-} driver_trial;
+} response_trial;
 
 typedef struct driver_tally {
     double ms, worst_ms, shares, least, response[CSCD_RESPONSE_COUNT];
@@ -81,7 +81,7 @@ static double longest_motion(const response_scene *s) {
 }
 
 /* The response of docs/solver/first-contact.md as it was before cscd_detector_make_safe. */
-static void push_apart(const driver_trial *t, const cscd_contact *c, double *x) {
+static void push_apart(const response_trial *t, const cscd_contact *c, double *x) {
     double weights[4], gap = 0.0, mobility = 0.0;
     cscd_stencil_weights(c->kind, c->u, c->v, weights);
     for (int i = 0; i < 4; i++) {
@@ -95,7 +95,7 @@ static void push_apart(const driver_trial *t, const cscd_contact *c, double *x) 
 }
 
 /* Four rounds of pushing, and the longest step from there. */
-static cscd_status respond_and_step(driver_trial *t, int rounds, double *obstacle_share) {
+static cscd_status respond_and_step(response_trial *t, int rounds, double *obstacle_share) {
     response_scene *s = t->scene;
     const cscd_view *x0 = CSCD_DOUBLES(s->x, s->vertex_count),
                     *x1 = CSCD_DOUBLES(t->reached, s->vertex_count);
@@ -113,7 +113,7 @@ static cscd_status respond_and_step(driver_trial *t, int rounds, double *obstacl
     return status;
 }
 
-static cscd_status truncate_to(driver_trial *t, double radius, double *obstacle_share) {
+static cscd_status truncate_to(response_trial *t, double radius, double *obstacle_share) {
     response_scene *s = t->scene;
     cscd_truncation cut;
     cscd_status status = cscd_detector_truncate(t->detector, CSCD_DOUBLES(s->x, s->vertex_count),
@@ -124,7 +124,7 @@ static cscd_status truncate_to(driver_trial *t, double radius, double *obstacle_
 }
 
 /* Obstacles that cannot get through go back as a whole, and all others have their way once more. */
-static cscd_status truncate_motion(driver_trial *t, double *obstacle_share) {
+static cscd_status truncate_motion(response_trial *t, double *obstacle_share) {
     response_scene *s = t->scene;
     size_t size = 3 * (size_t)s->vertex_count;
     double radius = 2.0001 * longest_motion(s);
@@ -140,7 +140,7 @@ static cscd_status truncate_motion(driver_trial *t, double *obstacle_share) {
     return status;
 }
 
-static cscd_status make_safe(driver_trial *t, double *obstacle_share, driver_tally *sum) {
+static cscd_status make_safe(response_trial *t, double *obstacle_share, driver_tally *sum) {
     response_scene *s = t->scene;
     double friction[RESPONSE_OBJECTS_MAX];
     for (int i = 0; i < RESPONSE_OBJECTS_MAX; i++) friction[i] = s->friction;
@@ -160,7 +160,7 @@ static cscd_status make_safe(driver_trial *t, double *obstacle_share, driver_tal
     return CSCD_OK;
 }
 
-static cscd_status drive_motion(driver_trial *t, driver by, double *obstacle_share, driver_tally *sum) {
+static cscd_status drive_motion(response_trial *t, driver by, double *obstacle_share, driver_tally *sum) {
     *obstacle_share = 1.0;
     memcpy(t->reached, t->scene->target, 3 * (size_t)t->scene->vertex_count * sizeof(double));
     switch (by) {
@@ -177,7 +177,7 @@ static cscd_status drive_motion(driver_trial *t, driver by, double *obstacle_sha
     }
 }
 
-static cscd_status run_frame(driver_trial *t, driver by, driver_tally *sum) {
+static cscd_status run_frame(response_trial *t, driver by, driver_tally *sum) {
     response_scene *s = t->scene;
     double obstacle_share, least, begin;
     cscd_contacts found;
@@ -202,9 +202,9 @@ static cscd_status run_frame(driver_trial *t, driver by, driver_tally *sum) {
     return CSCD_OK;
 }
 
-static cscd_status open_trial(response_scene *s, cscd_context *context, driver_trial *t) {
+static cscd_status open_trial(response_scene *s, cscd_context *context, response_trial *t) {
     cscd_object_desc objects[RESPONSE_OBJECTS_MAX];
-    *t = (driver_trial){.scene = s, .separation = 0.05 * s->spacing};
+    *t = (response_trial){.scene = s, .separation = 0.05 * s->spacing};
     for (uint32_t o = 0; o < s->object_count; o++) {
         objects[o] = cscd_object_of_triangles(s->objects[o].vertex_count, s->objects[o].triangle_count,
                                               s->objects[o].triangles);
@@ -221,7 +221,7 @@ static cscd_status open_trial(response_scene *s, cscd_context *context, driver_t
     return status;
 }
 
-static void close_trial(driver_trial *t) {
+static void close_trial(response_trial *t) {
     free(t->reached);
     cscd_detector_destroy(t->detector);
     cscd_detector_destroy(t->judge);
@@ -262,7 +262,7 @@ static void report_trial(response_kind kind, const response_scene *s, driver by,
 static bool run_trial(response_kind kind, uint32_t triangle_count, driver by, cscd_context *context,
                       json *out, io_error *error) {
     response_scene scene;
-    driver_trial t;
+    response_trial t;
     driver_tally sum = {.least = 1.0};
     if (!response_scene_make(kind, triangle_count, &scene, error)) return false;
     cscd_status status = open_trial(&scene, context, &t);
