@@ -152,7 +152,7 @@ cscd_status step_check_positions(cscd_detector *d, const double *x0, const doubl
 typedef enum step_rule {
     STEP_WITHIN,      /* they come within their distance */
     STEP_BELOW_FLOOR, /* they fall below their floor */
-    STEP_NEARLY /* they come within their distance; those that come within twice that may be listed, too: quicker */
+    STEP_NEARLY       /* the same, and some that come within twice their distance: quicker */
 } step_rule;
 
 /* Finds the contacts between x0 and x1, both checked, that the mode promises, and fills in the guarantees. Then the

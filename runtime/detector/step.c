@@ -93,6 +93,7 @@ static cscd_status refit_trees(step_work *work) {
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
     volume_growth growth = config_growth(&d->config);
+    growth.distance = interval->limit.distance;
     growth.beyond = interval->beyond;
     cscd_status status =
         bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval->x0, interval->x1, growth, growth);
@@ -438,13 +439,21 @@ static cscd_status answer_from_list(cscd_detector *d, const double *x0, const do
 
 /* ---- one interval, either way -------------------------------------------------------------------------- */
 
+/* What a quick search of floors looks at beyond the distance, as a share of it. A pair that it does not list is farther apart
+ * than its distance by so much that the next motion, too, is sure of this. */
+static const double quick_share = 0x1p-9;
+
+/* Where only the rules of objects say distances, or the distance is small beside what its floors need, the quick search is
+ * that of floors. */
 static interval_search search_by_rule(cscd_detector *d, const double *x0, const double *x1, step_rule rule) {
-    if (rule == STEP_BELOW_FLOOR) return detector_search_floors(d, x0, x1);
-    interval_search search = config_search_begin(&d->config, &d->space, x0, x1);
-    if (rule == STEP_NEARLY) {
-        search.interval.tolerance = 1.0;
-        search.interval.limit.tolerance = search.interval.limit.distance;
-    }
+    if (rule == STEP_WITHIN) return config_search_begin(&d->config, &d->space, x0, x1);
+    interval_search search = detector_search_floors(d, x0, x1);
+    const double distance = search.interval.limit.distance;
+    if (rule == STEP_BELOW_FLOOR || config_is_thick(&d->config) ||
+        !(search.interval.beyond < 0.5 * quick_share * distance))
+        return search;
+    search.interval.floor_ratio = 0.0;
+    search.interval.limit = (separation){(1.0 + quick_share) * distance, distance};
     return search;
 }
 

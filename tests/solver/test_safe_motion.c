@@ -425,3 +425,23 @@ TEST(the_end_of_a_safe_motion_is_known) {
     assert_int_equal(cscd_detector_counters(r.detector).clean, interval.triangle_count);
     rig_destroy(&r);
 }
+
+/* A motion that ends ever so little above the separation must not be the end of a quick search: the next motion would not be
+ * sure of the distance, and sink below it. */
+TEST(an_end_is_sure_of_the_separation) {
+    const double apart = 0.01;
+    static const double excesses[] = {1e-12, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3};
+    for (int i = 0; i < 6; i++) {
+        cscd_free_step step;
+        scene_two_triangles(&interval, 3.0 * apart);
+        move_triangle(1, -2.0 * apart + excesses[i] * apart);
+        rig r = rig_apart(&interval, apart, CSCD_METHOD_NONE, 1);
+        make_safe(&r, NULL);
+        memcpy(interval.x0, end, 18 * sizeof(double));
+        move_triangle(0, 0.0);
+        move_triangle(1, -0.09 * apart);
+        expect_ok(max_step_packed(r.detector, interval.x0, interval.x1, end, &step));
+        for (int v = 0; v < 9; v++) assert_true(end[3 * (3 + v / 3) + 2] - end[3 * (v % 3) + 2] > apart);
+        rig_destroy(&r);
+    }
+}
