@@ -242,7 +242,7 @@ static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found
     place_end(w);
     cscd_status status = tries_find(&w->tries, w->motion->x0, w->end, CSCD_MODE_ALL, rule, found);
     if (status != CSCD_OK || found->count == 0) return status;
-    if (found->items[0].toi == 0.0 && !w->start_looked_at) {
+    if (rule == STEP_BELOW_FLOOR && found->items[0].toi == 0.0 && !w->start_looked_at) {
         status = hold_touching(w);
         return status == CSCD_OK ? find_stops(w, rule, found) : status;
     }
@@ -263,9 +263,10 @@ static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found
 /* Responds until no contact is left, or no round. */
 static cscd_status respond_in_rounds(safe_work *w, bool *free) {
     cscd_contacts found;
+    const bool quick = w->detector->config.limit.distance > 0.0 && !config_is_thick(&w->detector->config);
     for (uint32_t round = 0; round < ROUNDS; round++) {
         if (round == STOP_ROUNDS) response_begin_zones(&w->response);
-        cscd_status status = find_stops(w, round == 0 ? STEP_NEARLY : STEP_BELOW_FLOOR, &found);
+        cscd_status status = find_stops(w, quick && round == 0 ? STEP_NEARLY : STEP_BELOW_FLOOR, &found);
         if (status != CSCD_OK) return status;
         w->found.rounds = round + 1;
         *free = found.count == 0;
