@@ -469,15 +469,7 @@ typedef struct cscd_tet_surface_arrays {
     const uint32_t *tetrahedra; /* per triangle: its tetrahedron, ascending */
 } cscd_tet_surface_arrays;
 
-/* Returns the arrays. An example, how positions go to the surface and gradients come back:
- *
- *     const cscd_tet_surface_arrays s = cscd_tet_surface_get(surface);
- *     for (uint32_t v = 0; v < s.vertex_count; v++)
- *         for (int k = 0; k < 3; k++) x[3 * v + k] = nodes[3 * s.vertices[v] + k];
- *     // ... and once the gradient by x is known:
- *     for (uint32_t v = 0; v < s.vertex_count; v++)
- *         for (int k = 0; k < 3; k++) forces[3 * s.vertices[v] + k] -= gradient[3 * v + k];
- */
+/* Returns the arrays. Vertex v of the surface is where vertices[v] is among all, and its gradient is added there. */
 CSCD_API cscd_tet_surface_arrays cscd_tet_surface_get(const cscd_tet_surface *surface);
 
 /* ==== Detector ============================================================================================== */

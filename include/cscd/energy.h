@@ -113,9 +113,10 @@ typedef struct cscd_energy_targets {
     double *matrix;
     const cscd_energy_pattern *pattern;
 
-    bool scalar_rows; /* matrix is CSR of numbers; false: BSR, block by block, each row by row */
-    bool project;     /* each item's Hessian becomes the nearest positive semidefinite matrix */
-    bool add;         /* gradient and matrix are added to what is there; false: they replace it */
+    bool scalar_rows;    /* matrix is CSR of numbers; false: BSR, block by block, each row by row */
+    bool project;        /* each item's Hessian becomes the nearest positive semidefinite matrix */
+    bool add;            /* gradient and matrix are added to what is there; false: they replace it */
+    uint8_t reserved[5]; /* 0 */
 } cscd_energy_targets;
 
 /* A sum of energies. */
@@ -131,13 +132,18 @@ typedef struct cscd_energy_sum {
  * in their order, so the bits do not depend on threads. It allocates only to make its memory larger. An
  * example:
  *
- *     cscd_energy_options options = cscd_energy_defaults();
- *     options.reach = 0.01;
- *     options.stiffness = 1e4;
+ *     cscd_energy *energy;
+ *     cscd_proximities pairs;
+ *     cscd_energy_sum sum;
  *     double gradient[3 * VERTICES];
  *     cscd_energy_targets targets = {.gradient = gradient};
- *     cscd_energy_sum sum;
- *     cscd_status status = cscd_energy_evaluate(energy, &pairs, CSCD_DOUBLES(x, VERTICES), &options, &targets, &sum);
+ *     cscd_energy_options options = cscd_energy_defaults();
+ *     options.reach = 0.6;
+ *     cscd_energy_create(context, mesh, &energy);
+ *     cscd_detector_find_near(detector, CSCD_DOUBLES(x0, n), options.reach, CSCD_NEAR_UNIQUE, &pairs);
+ *     cscd_status status =
+ *         cscd_energy_evaluate(energy, &pairs, CSCD_DOUBLES(x0, n), &options, &targets, &sum);
+ *     cscd_energy_destroy(energy);
  */
 CSCD_API cscd_status cscd_energy_evaluate(cscd_energy *energy, const cscd_proximities *items,
                                           const cscd_view *positions, const cscd_energy_options *options,

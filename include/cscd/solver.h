@@ -291,6 +291,7 @@ typedef struct cscd_safe_motion {
     const cscd_contact *held;
     size_t held_count;
     bool moved; /* some vertex is not where it was, bit for bit */
+    uint8_t reserved[7];
 } cscd_safe_motion;
 
 /* Finds a motion near the one from x0 to x1 that is certified free of contact and goes on moving, and writes

@@ -164,6 +164,25 @@ static void make_motion_safe(caller_state *s) {
               "cscd_detector_make_safe");
 }
 
+static void sum_energies(caller_state *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
+    cscd_energy *energy = NULL;
+    cscd_proximities near_pairs;
+    cscd_energy_sum sum;
+    OPTIONS(cscd_energy_options, cscd_energy_defaults_sized, options);
+    expect_that(options.value.stiffness == 1.0, "cscd_energy_options", "the default of stiffness");
+    options.value.reach = 0.5;
+    expect_ok(s, cscd_energy_create(s->context, s->mesh, &energy), "cscd_energy_create");
+    expect_ok(s, cscd_detector_find_near(s->detector, x0, 0.5, CSCD_NEAR_UNIQUE, &near_pairs),
+              "cscd_detector_find_near");
+    REFUSE(cscd_energy_options, options.value,
+           cscd_energy_evaluate(energy, &near_pairs, x0, &options.value, NULL, &sum),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_energy_evaluate(energy, &near_pairs, x0, &options.value, NULL, &sum),
+              "cscd_energy_evaluate");
+    cscd_energy_destroy(energy);
+}
+
 static void track_events(caller_state *s) {
     cscd_event_tracker *tracker = NULL;
     OPTIONS(cscd_event_options, cscd_event_defaults_sized, options);
@@ -196,6 +215,7 @@ int main(void) {
     create_detector(&s);
     ask_detector(&s);
     make_motion_safe(&s);
+    sum_energies(&s);
     track_events(&s);
     create_sensors(&s);
     cscd_sensors_destroy(s.sensors);
