@@ -25,7 +25,8 @@ extern "C" {
  * Items may also be your own. Of each, kind, vertices, weights, weight, separation, threshold and count are
  * read, and of VH the normal. On the border of a feature some weights are exactly 0 (cscd_stencil). */
 
-/* An energy of a distance d, of which r is the reach and s a distance to keep (cscd_energy_options). It is 0 from s + r on; below, with g = d - s:
+/* An energy of a distance d, with the reach r and a distance s to keep (cscd_energy_options). It is 0 from
+ * s + r on; below, with g = d - s:
  *   BARRIER          -(g - r)^2 ln(g / r): Li et al. 2020, eq. 6; a squared length, infinite at s
  *   BARRIER_SQUARED  the same of d^2 - s^2 and (s + r)^2 - s^2, as in their programs and in IPC Toolkit; the
  *                    fourth power of a length, infinite at s

@@ -122,8 +122,8 @@ typedef struct cscd_proximities {
 /* Finds every pair of features that is at most `distance`, a length above 0, apart at `positions`. Listed
  * pairs are at most (1 + 1e-6) times that apart or, where rounding is coarser, 2^-42 of their extent beyond
  * it. Seams and pairs to leave out count; min_separation does only where `form` has BEYOND. Items beyond
- * `distance` need not count all of their pairs. Timings, counters and guarantees stay those of the last step. CANCELLED: see cscd_progress.
- */
+ * `distance` need not count all of their pairs. Timings, counters and guarantees stay those of the last step.
+ * CANCELLED: see cscd_progress. */
 CSCD_API cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
                                              double distance, cscd_near_form form, cscd_proximities *out);
 
@@ -223,8 +223,8 @@ typedef struct cscd_truncation {
 /* Moves each vertex from x0 towards x1 as far as planes between near pairs allow (Divide and Truncate, Chen
  * et al. 2026). Pairs at most search_radius, a length above 0, farther apart than min_separation have a
  * plane where their motions could bring them together, and their vertices keep to their sides. No vertex goes
- * farther than half of search_radius; twice the longest motion stops none. Obstacles come first. The vertices of a seam go the same share. Motions are
- * shortened, not turned.
+ * farther than half of search_radius; twice the longest motion stops none. Obstacles come first. The
+ * vertices of a seam go the same share. Motions are shortened, not turned.
  *
  * Pairs without a common vertex that are apart at x0 stay apart: farther than min_separation if they are that
  * at x0, else at 0.985 of their distance or more. This holds for the positions as stored in `reached`, which
@@ -301,8 +301,9 @@ typedef struct cscd_safe_motion {
  * cscd_detector_truncate. Obstacles go where they want unless something is caught between them, and then stop
  * as a whole. The vertices of a seam are shifted by the same.
  *
- * The certificate is that of cscd_detector_max_step, for the positions as stored: nothing touches on the
- * motion but what is `held`, and no pair sinks below its floor (docs/solver/guarantees.md). A velocity follows from
+ * The certificate is for the positions as stored: nothing touches on the motion but what is `held`. As in
+ * cscd_detector_max_step no pair sinks below its floor; where planes truncate, one that starts nearer than
+ * min_separation keeps 0.985 of its distance (docs/solver/guarantees.md). A velocity follows from
  * reached - x0. The result is the same for any number of threads. Timings and counters are those of the
  * whole call. options: NULL for the defaults. INVALID_ARGUMENT also for the methods PUBLISHED and
  * ICCD_PUBLISHED, where no vertex can move, and for doubles in x0 with floats in `reached`. CANCELLED: see
