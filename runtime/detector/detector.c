@@ -310,6 +310,7 @@ interval_search detector_search_floors(cscd_detector *d, const double *x0, const
     interval_search search = config_search_begin(&d->config, &d->space, x0, x1);
     search.interval.beyond = detector_floors_beyond(d, d->config.limit.distance, x0, x1);
     search.interval.floor_ratio = search.interval.beyond > 0.0 ? d->config.options.floor_ratio : 0.0;
+    if (d->config.limit.distance > 0.0) search.interval.filter.seam_names = d->config.exclusions.names;
     return search;
 }
 

@@ -217,6 +217,18 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
     }
 }
 
+static bool shares_seam(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    const uint32_t *names = interval->filter.seam_names;
+    if (names == NULL) return false;
+    const cscd_stencil s = mesh_stencil(interval->mesh, kind, a, b, 0.0, 0.0);
+    const int first = points_of_first(kind);
+    for (int i = 0; i < first; i++) {
+        for (int j = first; j < 4; j++)
+            if (names[s.vertices[i]] == names[s.vertices[j]]) return true;
+    }
+    return false;
+}
+
 /* Finds the pairs that fall below their floors. Those whose floor is 0 must not touch. */
 static void test_floors(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                         contact_worker *worker) {
@@ -227,6 +239,7 @@ static void test_floors(const swept_interval *interval, cscd_contact_kind kind, 
         elementary_query query;
         elementary_contact contact;
         bool bounded = false;
+        if (shares_seam(interval, kind, pairs->a[i], pairs->b[i])) continue;
         separation limit = pair_separation(interval, kind, pairs->a[i], pairs->b[i]);
         floor_ladder ladder = {limit.distance, interval->floor_ratio, limit.tolerance / limit.distance};
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);

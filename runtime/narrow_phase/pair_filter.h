@@ -103,6 +103,9 @@ typedef struct pair_filter {
     const pair_rules *rules;  /* NULL: all objects are looked at, but obstacles with obstacles */
     const active_set *active; /* NULL: all vertices are active */
     const bool *collapsed; /* per component: it is not looked at with others of these; NULL: there are none */
+    /* Per vertex, the smallest one of its seam: pairs with a seam in common, which lists leave out anyway, may go untested.
+     * NULL: they are tested, because what touches there matters to culling. */
+    const uint32_t *seam_names;
 } pair_filter;
 
 /* Are two objects, of triangles or not, or an object and itself, looked at with each other? */

@@ -332,6 +332,9 @@ TEST(seams_stay_sewn) {
     options.seams = seams;
     options.seam_count = 2;
     rig r = rig_create(&interval, 1, &options);
+    cscd_free_step step;
+    expect_ok(max_step_packed(r.detector, interval.x0, interval.x1, end, &step));
+    assert_true(step.fraction > 0.1 && step.fraction < 0.15); /* from 0.05 to 0.01, of 0.3 */
     cscd_safe_motion out = make_safe(&r, NULL);
     assert_true(out.response_counts[CSCD_RESPONSE_STOPPED] > 0);
     assert_memory_equal(end + 9, end + 18, 6 * sizeof(double));
