@@ -24,7 +24,7 @@ static const double slack = 0x1p-6;
 /* A contact next to a vertex that cannot move pushes the others hardly at all, where they weigh little, rather than far away. */
 static const double least_mobility = 0x1p-7;
 
-enum { PASSES = 12, PASSES_OF_PUSHED = 4 };
+enum { PASSES = 40, PASSES_OF_PUSHED = 4 };
 
 static void add_scaled(double sum[3], double s, const double x[3]) {
     vec3_add_scaled(sum, s, x, sum);
@@ -116,33 +116,65 @@ static void rub_points(contact_stop *stop, const double motion[3], double approa
     }
 }
 
+/* Has a vertex of the stop been shifted since the stop was last looked at? */
+static bool is_news(const contact_response *r, const contact_stop *stop) {
+    bool any = false;
+    for (int i = 0; i < 4; i++) any |= r->shifted[stop->vertices[i]] > stop->seen;
+    return any;
+}
+
 /* Returns whether the pair approached by more than is small enough. */
-static bool solve_stop(const contact_response *r, contact_stop *stop) {
+static bool solve_stop(contact_response *r, contact_stop *stop) {
     double motion[3], change[3];
     memcpy(motion, stop->motion, sizeof motion);
     add_shifts(r, stop, motion);
     double approach = -vec3_dot(motion, stop->normal);
-    if (stop->pushed == 0.0 && approach <= stop->allowed) return false;
+    stop->seen = r->clock;
+    if (approach <= stop->allowed && (stop->pushed == 0.0 || approach >= 2.0 * stop->goal - stop->allowed))
+        return false;
     double pushed = max_of(stop->pushed + (approach - stop->goal) / stop->mobility, 0.0);
     for (int k = 0; k < 3; k++) change[k] = (pushed - stop->pushed) * stop->normal[k];
     stop->pushed = pushed;
     if (stop->friction > 0.0) rub_points(stop, motion, approach, change);
-    for (int i = 0; i < 4; i++)
+    stop->seen = ++r->clock;
+    for (int i = 0; i < 4; i++) {
         add_scaled(r->shift + (size_t)stop->vertices[i] * 3,
                    r->mobilities[stop->vertices[i]] * stop->weights[i], change);
+        r->shifted[stop->vertices[i]] = r->clock;
+    }
     return approach > stop->allowed;
+}
+
+/* Goes over all stops, and links those on which an impulse acts. Returns whether any approached by too much. */
+static bool pass_over_all(contact_response *r, uint32_t *first_pushed) {
+    bool any = false;
+    uint32_t *link = first_pushed;
+    for (uint32_t i = 0; i < r->stop_count; i++) {
+        contact_stop *stop = &r->stops[i];
+        if (stop->mobility > 0.0 && is_news(r, stop)) any |= solve_stop(r, stop);
+        if (stop->pushed == 0.0) continue;
+        *link = i;
+        link = &stop->next_pushed;
+    }
+    *link = UINT32_MAX;
+    return any;
+}
+
+static void pass_over_pushed(contact_response *r, uint32_t first) {
+    for (uint32_t i = first; i != UINT32_MAX; i = r->stops[i].next_pushed) {
+        contact_stop *stop = &r->stops[i];
+        if (stop->pushed > 0.0 && is_news(r, stop)) solve_stop(r, stop);
+    }
 }
 
 /* Between two passes over all stops there are some over those on which an impulse acts, mostly few. */
 void response_stop(contact_response *r) {
-    bool any = true;
-    for (int pass = 0; any && pass < PASSES; pass++) {
-        const bool all = pass % PASSES_OF_PUSHED == 0;
-        any = !all;
-        for (size_t i = 0; i < r->stop_count; i++) {
-            contact_stop *stop = &r->stops[i];
-            if (all ? stop->mobility > 0.0 : stop->pushed > 0.0) any |= solve_stop(r, stop);
-        }
+    uint32_t first_pushed;
+    for (int pass = 0; pass < PASSES; pass++) {
+        if (pass % PASSES_OF_PUSHED != 0)
+            pass_over_pushed(r, first_pushed);
+        else if (!pass_over_all(r, &first_pushed))
+            return;
     }
 }
 

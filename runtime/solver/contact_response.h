@@ -8,7 +8,9 @@
  * are named by their seams. */
 typedef struct contact_stop {
     uint32_t vertices[4];
-    double weights[4]; /* as in cscd_stencil */
+    uint32_t seen;        /* the shifts until this one are known to it */
+    uint32_t next_pushed; /* the next stop on which an impulse acts */
+    double weights[4];    /* as in cscd_stencil */
     double normal[3];
     double motion[3];     /* of the first point relative to the second, without any shift */
     double allowed, goal; /* an approach that is small enough, and the smaller one that a pass aims at */
@@ -37,9 +39,11 @@ typedef struct contact_response {
     double rounding;             /* bounds how far storing the end moves two points relative to each other */
     const swept_interval *rules; /* by which pairs keep a distance */
     double *shift;               /* per name, 3 each */
+    uint32_t *shifted;           /* per name: its last shift, numbered by the clock; 1: none yet */
+    uint32_t clock;
 
     contact_stop *stops; /* of all rounds */
-    size_t stop_count, stop_capacity;
+    size_t stop_count;
     size_t zone_begin; /* the stops from here on are of zones */
 
     uint32_t *parents; /* per name: a forest of zones */

@@ -66,7 +66,7 @@ static cscd_status grow_block(cscd_context *context, void **block, size_t *size,
     return CSCD_OK;
 }
 
-enum { BYTES_PER_VERTEX = 7 * sizeof(double) + sizeof(impact_zone) + sizeof(uint32_t) + sizeof(uint8_t) };
+enum { BYTES_PER_VERTEX = 7 * sizeof(double) + sizeof(impact_zone) + 2 * sizeof(uint32_t) + sizeof(uint8_t) };
 
 static cscd_status reserve_work(safe_work *w) {
     cscd_detector *d = w->detector;
@@ -85,7 +85,8 @@ static cscd_status reserve_work(safe_work *w) {
     w->shares = doubles + 7 * vertices;
     r->zones = (void *)(w->shares + objects);
     r->parents = (void *)(r->zones + vertices);
-    w->kinds = (void *)(r->parents + vertices);
+    r->shifted = r->parents + vertices;
+    w->kinds = (void *)(r->shifted + vertices);
     w->end = d->reached;
     return CSCD_OK;
 }
@@ -172,6 +173,8 @@ static void begin_work(safe_work *w) {
     memcpy(w->wanted, w->motion->x1, coordinates * sizeof(double));
     memset(r->shift, 0, coordinates * sizeof(double));
     memset(w->kinds, CSCD_RESPONSE_FREE, mesh->vertex_count);
+    r->clock = 1;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) r->shifted[v] = 1;
     for (uint32_t o = 0; o < mesh->object_count; o++) w->shares[o] = 1.0;
     weigh_vertices(w);
 }
@@ -252,7 +255,8 @@ static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found
         if (!is_held(w, &items[i])) items[count++] = items[i];
     }
     found->count = count;
-    if (count > SIZE_MAX / 4 / sizeof(contact_stop) - r->stop_count) return CSCD_OUT_OF_MEMORY;
+    if (count >= UINT32_MAX - r->stop_count || count > SIZE_MAX / 4 / sizeof(contact_stop) - r->stop_count)
+        return CSCD_OUT_OF_MEMORY;
     status = grow_block(d->context, &d->response.stops, &d->response.stops_size,
                         (r->stop_count + count) * sizeof(contact_stop), r->stop_count * sizeof(contact_stop));
     r->stops = d->response.stops;
