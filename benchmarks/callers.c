@@ -61,14 +61,14 @@ static uint32_t frames_soft(const char *name) {
 }
 
 static bool open_cloth(const char *name, cscd_context *context, caller *out, io_error *error) {
-    if (!cloth_open(cloth_scene_find(name), 0, DRIVER_STEPS, context, &out->cloth, error)) return false;
+    if (!cloth_open(cloth_scene_find(name), 0, context, &out->cloth, error)) return false;
     out->triangle_count = cscd_mesh_triangle_count(out->cloth.mesh);
     return true;
 }
 
 static bool advance_cloth(caller *c, io_error *error) {
     bool good = cloth_advance(&c->cloth, error);
-    c->detect_ms = c->cloth.statistics.near_ms + c->cloth.statistics.step_ms;
+    c->detect_ms = c->cloth.statistics.safe_ms;
     return good;
 }
 

@@ -56,14 +56,15 @@ static bool close_outputs(cloth_files *out, io_error *error) {
     return good;
 }
 
-/* Prints the part of the summary that continuous detection alone has. */
-static void print_steps(const cloth_statistics *t) {
-    const safe_motion_counts *m = &t->motion;
+/* Prints the part of the summary that the response alone has. */
+static void print_response(const cloth_statistics *t) {
     printf(
-        "  %llu of %u motions were cut, for %llu contacts; %llu began pressed together; %llu were shortened as "
-        "a whole\n",
-        (unsigned long long)m->cut, t->frames, (unsigned long long)m->contacts, (unsigned long long)m->tight,
-        (unsigned long long)m->fallbacks);
+        "  %llu of %u motions were changed, by %.0f contacts each; %.2f %% of vertices were stopped, %.2f %% in zones, "
+        "%.2f %% truncated\n",
+        (unsigned long long)t->cut, t->frames, t->cut > 0 ? (double)t->pushed / (double)t->cut : 0.0,
+        100.0 * t->shares[CSCD_RESPONSE_STOPPED] / t->frames,
+        100.0 * t->shares[CSCD_RESPONSE_ZONE] / t->frames,
+        100.0 * t->shares[CSCD_RESPONSE_TRUNCATED] / t->frames);
 }
 
 static void print_summary(const cloth_simulation *c, uint64_t late_allocations) {
@@ -71,19 +72,13 @@ static void print_summary(const cloth_simulation *c, uint64_t late_allocations) 
     const cloth_statistics *t = &c->statistics;
     double frames = t->frames;
     printf("%s: %s\n", s->name, s->text);
-    printf("  %u frames of %u triangles, %g s each; thickness %.2g, certified %.2g\n", t->frames + 1,
-           c->garment.triangle_count, s->frame_seconds, cloth_thickness(c), cloth_separation(c));
-    printf("  near: %.0f pairs a frame; %.2f %% of all motion was left, obstacles waited %.2f frames\n",
-           (double)t->near_pairs / frames, 100.0 * (1.0 - t->lost / t->wanted), t->waited);
-    if (c->bounded.detector == NULL) print_steps(t);
-    if (c->bounded.detector != NULL)
-        printf("  %.2f %% of it was left by first rounds\n",
-               100.0 * (1.0 - c->bounded.left_over / t->wanted));
+    printf("  %u frames of %u triangles, %g s each; certified %.2g; obstacles waited %.2f frames\n",
+           t->frames + 1, c->garment.triangle_count, s->frame_seconds, cloth_separation(c), t->waited);
+    print_response(t);
     printf(
-        "  %.2f ms a frame: solver %.2f, near %.2f, %.1f %s %.2f (up to %llu); %llu allocations in the last half\n",
-        t->total_ms / frames, (t->total_ms - t->near_ms - t->step_ms) / frames, t->near_ms / frames,
-        (double)t->rounds / frames, c->bounded.detector == NULL ? "detector steps" : "rounds",
-        t->step_ms / frames, (unsigned long long)t->most_rounds, (unsigned long long)late_allocations);
+        "  %.2f ms a frame: solver %.2f, %.1f rounds %.2f (up to %llu); %llu allocations in the last half\n",
+        t->total_ms / frames, (t->total_ms - t->safe_ms) / frames, (double)t->rounds / frames,
+        t->safe_ms / frames, (unsigned long long)t->most_rounds, (unsigned long long)late_allocations);
 }
 
 static bool record_frames(cloth_simulation *c, const char *folder, const uint64_t *allocations,
@@ -105,15 +100,10 @@ static bool record_frames(cloth_simulation *c, const char *folder, const uint64_
     return good && complete;
 }
 
-typedef struct cloth_options {
-    uint32_t resolution; /* 0: the scene's own */
-    motion_driver driver;
-} cloth_options;
-
-/* Records one scene. user points to the options. */
+/* Records one scene. user points to the resolution; 0: the scene's own. */
 static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     const cloth_scene *s = &cloth_scenes[index];
-    const cloth_options *o = user;
+    const uint32_t *resolution = user;
     uint64_t allocations = 0;
     cscd_context *context;
     cscd_context_options options = cscd_context_defaults();
@@ -121,7 +111,7 @@ static bool record_scene(void *user, uint32_t index, const char *folder, io_erro
     cscd_status status = cscd_context_create(&options, &context);
     if (status != CSCD_OK) return io_fail(error, "%s: %s", s->name, cscd_status_string(status));
     cloth_simulation c;
-    bool good = cloth_open(s, o->resolution, o->driver, context, &c, error);
+    bool good = cloth_open(s, *resolution, context, &c, error);
     if (good) {
         good = record_frames(&c, folder, &allocations, error);
         cloth_close(&c);
@@ -143,24 +133,10 @@ static bool parse_resolution(const char *text, uint32_t *out) {
     return true;
 }
 
-static bool parse_driver(const char *text, motion_driver *out) {
-    for (motion_driver d = DRIVER_STEPS; d < DRIVER_COUNT; d++) {
-        if (strcmp(text, motion_driver_name(d)) != 0) continue;
-        *out = d;
-        return true;
-    }
-    fprintf(stderr, "cloth: --driver '%s': steps, bounds or planes is wanted\n", text);
-    return false;
-}
-
 /* Reads the options before the scenes; *first is what follows them. */
-static bool parse_options(int count, char **arguments, cloth_options *out, int *first) {
-    for (*first = 1; *first + 1 < count; *first += 2) {
-        const char *name = arguments[*first], *value = arguments[*first + 1];
-        bool resolution = strcmp(name, "--resolution") == 0;
-        if (!resolution && strcmp(name, "--driver") != 0) return true;
-        if (!(resolution ? parse_resolution(value, &out->resolution) : parse_driver(value, &out->driver)))
-            return false;
+static bool parse_options(int count, char **arguments, uint32_t *resolution, int *first) {
+    for (*first = 1; *first + 1 < count && strcmp(arguments[*first], "--resolution") == 0; *first += 2) {
+        if (!parse_resolution(arguments[*first + 1], resolution)) return false;
     }
     return true;
 }
@@ -174,26 +150,24 @@ static const char *scene_text(uint32_t index) {
 }
 
 int main(int argument_count, char **arguments) {
-    cloth_options options = {0, DRIVER_STEPS};
+    uint32_t resolution = 0;
     const scene_program program = {
         .name = "cloth",
         .help =
-            "usage: cloth [--resolution N] [--driver D] SCENE... FOLDER\n"
+            "usage: cloth [--resolution N] SCENE... FOLDER\n"
             "\n"
             "Simulates cloth and writes, for each scene, FOLDER/SCENE.obj and SCENE.pc2, and what the cloth\n"
             "falls onto as SCENE-scenery.obj and, if it moves, SCENE-scenery.pc2. The folder must exist.\n"
             "N, 12 to 500, is the number of vertices along a side or around a tube; the default is 60, of "
-            "a bag 45. D says what keeps things apart: `steps`, continuous detection (the default), `bounds`, a\n"
-            "ball for each vertex, or `planes` between near pairs.\n"
-            "`all` stands for all scenes:\n"
+            "a bag 45. `all` stands for all scenes:\n"
             "\n",
         .scene_count = cloth_scene_count,
         .scene_name = scene_name,
         .scene_text = scene_text,
         .record = record_scene,
-        .user = &options};
+        .user = &resolution};
     int first;
-    if (!parse_options(argument_count, arguments, &options, &first)) return 2;
+    if (!parse_options(argument_count, arguments, &resolution, &first)) return 2;
     arguments[first - 1] = arguments[0];
     return scene_program_run(&program, argument_count - first + 1, arguments + first - 1);
 }

@@ -7,18 +7,10 @@
 #include <string.h>
 
 /* In spacings of the vertices. In flat cloth, features that share no vertex are at least 0.7 apart. */
-static const double thickness = 0.3, separation = 0.03, reach = 0.45;
-
-/* Shares of the missing distance that a small step adds. Layers that are pushed apart press on the lowest
- * one, which must not give way to an obstacle. */
-static const double healing[2] = {0.05, 0.3};
-
-double cloth_thickness(const cloth_simulation *c) {
-    return thickness * c->spacing;
-}
+static const double separation = 0.1;
 
 double cloth_separation(const cloth_simulation *c) {
-    return ldexp(c->safe.separation, -2 * (int)c->safe.counts.tightest);
+    return separation * c->spacing;
 }
 
 static bool explain_status(const cloth_simulation *c, cscd_status status, io_error *error) {
@@ -61,15 +53,15 @@ static cscd_status make_state(cloth_simulation *c) {
     memcpy(c->positions, c->garment.positions, garment * 3 * sizeof *c->positions);
     place_obstacles(c, 0.0, c->positions);
     memcpy(c->start, c->positions, vertices * 3 * sizeof *c->start);
-    c->pairs.thickness = cloth_thickness(c);
-    memcpy(c->pairs.healing, healing, sizeof healing);
-    c->pairs.friction = c->scene->friction;
-    return safe_motion_open(c->mesh, separation * c->spacing, c->inverse_masses, c->seams, c->seam_count,
-                            &c->safe);
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = cloth_separation(c);
+    options.seams = c->seams;
+    options.seam_count = c->seam_count;
+    return cscd_detector_create(c->context, c->mesh, NULL, &options, &c->detector);
 }
 
-bool cloth_open(const cloth_scene *s, uint32_t resolution, motion_driver driver, cscd_context *context,
-                cloth_simulation *out, io_error *error) {
+bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context, cloth_simulation *out,
+                io_error *error) {
     cloth_simulation c = {.scene = s, .context = context};
     if (resolution == 0) resolution = s->resolution;
     c.spacing = cloth_scene_spacing(s, resolution);
@@ -83,17 +75,12 @@ bool cloth_open(const cloth_scene *s, uint32_t resolution, motion_driver driver,
         cloth_close(&c);
         return false;
     }
-    if (driver != DRIVER_STEPS)
-        bounded_motion_open(c.safe.detector, c.mesh, driver, reach * c.spacing, c.garment.vertex_count,
-                            &c.bounded);
     *out = c;
     return true;
 }
 
 void cloth_close(cloth_simulation *c) {
-    bounded_motion_close(&c->bounded);
-    safe_motion_close(&c->safe);
-    apart_free(&c->pairs);
+    cscd_detector_destroy(c->detector);
     fabric_free(&c->cloth);
     cscd_mesh_destroy(c->mesh);
     body_free(&c->garment);
@@ -102,6 +89,18 @@ void cloth_close(cloth_simulation *c) {
     double *arrays[] = {c->positions, c->start, c->target, c->previous, c->velocities, c->inverse_masses};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     *c = (cloth_simulation){0};
+}
+
+/* Moves both vertices of each seam to their common centre of mass. */
+static void sew_seams(const cloth_simulation *c, double *positions) {
+    for (uint32_t i = 0; i < c->seam_count; i++) {
+        uint32_t a = c->seams[2 * i], b = c->seams[2 * i + 1];
+        double wa = c->inverse_masses[a], wb = c->inverse_masses[b];
+        for (uint32_t k = 0; k < 3; k++) {
+            double *x = &positions[a * 3 + k], *y = &positions[b * 3 + k];
+            if (*x != *y) *x = *y = (wb * *x + wa * *y) / (wa + wb);
+        }
+    }
 }
 
 /* Takes one small step. Obstacles move evenly from the start of the frame to `goal`. */
@@ -118,9 +117,8 @@ static void small_step(cloth_simulation *c, const double *goal, uint32_t which) 
     for (size_t i = free_size; i < size; i++)
         x[i] = c->start[i] + (double)(which + 1) / steps * (goal[i] - c->start[i]);
     fabric_solve(&c->cloth, step, c->previous, x);
-    apart_solve(&c->pairs, c->inverse_masses, c->previous, x);
-    safe_motion_sew(&c->safe, c->previous);
-    safe_motion_sew(&c->safe, x);
+    sew_seams(c, c->previous);
+    sew_seams(c, x);
     for (size_t i = 0; i < free_size; i++) c->velocities[i] = (x[i] - c->previous[i]) / step;
 }
 
@@ -134,32 +132,29 @@ static void find_target(cloth_simulation *c) {
     memcpy(goal, c->target, size * sizeof *goal);
 }
 
-/* The sum of what the garment's vertices are apart. */
-static double garment_distance(const cloth_simulation *c, const double *a, const double *b) {
-    double sum = 0.0;
-    for (size_t v = 0; v < c->garment.vertex_count; v++) {
-        double squared = 0.0;
-        for (size_t i = 3 * v; i < 3 * v + 3; i++) squared += (a[i] - b[i]) * (a[i] - b[i]);
-        sum += sqrt(squared);
-    }
-    return sum;
-}
-
 /* Makes the motion from start to positions free of contact, and counts what it costs. */
-static cscd_status find_motion(cloth_simulation *c, double *length) {
-    cloth_statistics *s = &c->statistics;
+static cscd_status make_safe(cloth_simulation *c, double *length) {
+    uint32_t count = cscd_mesh_vertex_count(c->mesh);
+    cscd_response_options options = cscd_response_defaults();
+    double friction[1 + CLOTH_OBSTACLES_MAX];
+    for (int i = 0; i < 1 + CLOTH_OBSTACLES_MAX; i++) friction[i] = c->scene->friction;
+    options.inverse_masses = c->inverse_masses;
+    options.friction = friction;
+    cscd_safe_motion safe;
     double begin = clock_now_ms();
-    bool bounded = c->bounded.detector != NULL;
-    uint64_t before = bounded ? c->bounded.rounds : c->safe.counts.steps;
-    cscd_status status = bounded ? bounded_motion_find(&c->bounded, c->start, c->positions, length)
-                                 : safe_motion_find(&c->safe, c->start, c->positions, length);
-    uint64_t rounds = (bounded ? c->bounded.rounds : c->safe.counts.steps) - before;
-    s->step_ms += clock_now_ms() - begin;
-    s->rounds += rounds;
-    if (rounds > s->most_rounds) s->most_rounds = rounds;
-    s->wanted += garment_distance(c, c->target, c->start);
-    s->lost += garment_distance(c, c->target, c->positions);
-    return status;
+    cscd_status status =
+        cscd_detector_make_safe(c->detector, CSCD_DOUBLES(c->start, count), CSCD_DOUBLES(c->positions, count),
+                                &options, CSCD_MUTABLE_DOUBLES(c->positions, count), &safe);
+    if (status != CSCD_OK) return status;
+    cloth_statistics *s = &c->statistics;
+    s->safe_ms += clock_now_ms() - begin;
+    s->cut += safe.rounds > 1;
+    s->pushed += safe.pushed;
+    s->rounds += safe.rounds;
+    if (safe.rounds > s->most_rounds) s->most_rounds = safe.rounds;
+    for (int i = 0; i < CSCD_RESPONSE_COUNT; i++) s->shares[i] += (double)safe.response_counts[i] / count;
+    *length = safe.obstacle_share;
+    return CSCD_OK;
 }
 
 bool cloth_advance(cloth_simulation *c, io_error *error) {
@@ -168,24 +163,14 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     cloth_statistics *s = &c->statistics;
     double begin = clock_now_ms(), length;
     memcpy(c->start, c->positions, size * sizeof *c->start);
-    cscd_proximities near;
-    cscd_status status =
-        cscd_detector_find_near(c->safe.detector, CSCD_DOUBLES(c->start, cscd_mesh_vertex_count(c->mesh)),
-                                reach * c->spacing, CSCD_NEAR_PAIRS, &near);
-    s->near_ms += clock_now_ms() - begin;
-    if (!explain_status(c, status, error)) return false;
-    apart_take(&c->pairs, c->mesh, &near);
     find_target(c);
-
-    status = find_motion(c, &length);
+    cscd_status status = make_safe(c, &length);
     if (!explain_status(c, status, error)) return false;
     for (size_t i = 0; i < free_size; i++)
         c->velocities[i] += (c->positions[i] - c->target[i]) / c->scene->frame_seconds;
     c->clock += length * c->scene->frame_seconds;
 
     s->frames++;
-    s->near_pairs += near.count;
-    s->motion = c->safe.counts;
     s->waited += 1.0 - length;
     s->total_ms += clock_now_ms() - begin;
     return true;

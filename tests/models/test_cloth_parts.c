@@ -192,56 +192,6 @@ TEST(a_hanging_sheet_stretches_little) {
     body_free(&b);
 }
 
-/* Makes a pair of a vertex of mass 1 above a fixed triangle: vertex 0 over 1, 2, 3. */
-static apart one_pair(apart_pair *pair) {
-    *pair = (apart_pair){
-        .stencil = {{0, 1, 2, 3}, {1.0, -0.5, -0.25, -0.25}}, .normal = {0.0, 0.0, 1.0}, .healing = 0.1};
-    return (apart){.pairs = pair, .count = 1, .thickness = 0.01, .friction = 0.5};
-}
-
-static void solve_one(double from_height, const double motion[3], double x[12], double previous[12]) {
-    static const double triangle[12] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, -1.0, 1.0, 0.0};
-    static const double inverse_masses[4] = {1.0, 0.0, 0.0, 0.0};
-    apart_pair pair;
-    apart a = one_pair(&pair);
-    memcpy(previous, triangle, sizeof triangle);
-    previous[2] = from_height;
-    memcpy(x, previous, sizeof triangle);
-    vec3_add_scaled(x, 1.0, motion);
-    apart_solve(&a, inverse_masses, previous, x);
-    assert_memory_equal(x + 3, triangle + 3, 9 * sizeof *x);
-}
-
-TEST(what_approaches_is_stopped_at_the_thickness) {
-    double x[12], previous[12];
-    solve_one(0.03, (double[3]){0.0, 0.0, -0.01}, x, previous); /* still far enough */
-    assert_true(x[2] == 0.03 - 0.01);
-    solve_one(0.03, (double[3]){0.0, 0.0, -0.05}, x, previous);
-    assert_true(fabs(x[2] - 0.01) < 1e-15 && previous[2] == 0.03);
-    solve_one(0.012, (double[3]){0.0, 0.0, 0.05}, x, previous); /* on its way out */
-    assert_true(fabs(x[2] - 0.062) < 1e-15 && previous[2] == 0.012);
-}
-
-/* When a pair is too near, position and previous position move alike. */
-TEST(what_is_too_near_parts_without_speed) {
-    double x[12], previous[12];
-    solve_one(0.004, (double[3]){0.0, 0.0, 0.0}, x, previous);
-    assert_true(fabs(x[2] - 0.0046) < 1e-15);
-    assert_true(fabs(x[2] - previous[2]) < 1e-15);
-}
-
-/* The tangential motion shrinks by friction times what was stopped, at most to zero. */
-TEST(friction_is_coulombs) {
-    double x[12], previous[12];
-    solve_one(0.01, (double[3]){0.03, 0.04, -0.02}, x, previous);
-    assert_true(fabs(hypot(x[0], x[1]) - (0.05 - 0.5 * 0.02)) < 1e-15);
-    assert_true(fabs(x[1] / x[0] - 4.0 / 3.0) < 1e-12);
-    solve_one(0.01, (double[3]){0.003, 0.004, -0.02}, x, previous);
-    assert_true(hypot(x[0], x[1]) < 1e-15);
-    solve_one(0.02, (double[3]){0.03, 0.04, 0.0}, x, previous); /* not in contact */
-    assert_true(fabs(hypot(x[0], x[1]) - 0.05) < 1e-15);
-}
-
 TEST(obstacles_move_as_told) {
     const cloth_obstacle o = {.kind = CLOTH_BALL,
                               .size = 0.5,

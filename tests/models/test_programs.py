@@ -60,7 +60,6 @@ def test_help_lists_the_scenes(name):
     (2, "'12x'", "cloth --resolution 12x sleeve ."),
     (2, "'-20'", "cloth --resolution -20 sleeve ."),
     (1, "none", "cloth --resolution 12 sleeve none"),
-    (2, "steps, bounds or planes is wanted", "cloth --resolution 20 --driver balls sleeve ."),
     (2, "'ring'", "ipc ring ."),
     (2, "'pres'", "ipc rings pres ."),
     (1, "none", "ipc rings none"),
@@ -87,7 +86,7 @@ def test_what_makes_no_sense_is_refused(code, text, line):
 
 
 @pytest.mark.parametrize("line", [
-    "cloth --resolution 20", "cloth --driver planes --resolution 20", "panels --frames", "panels --frames 0",
+    "cloth --resolution 20", "panels --frames", "panels --frames 0",
     "panels --side 1000", "panels --unknown 1", "shape",
 ])
 def test_usage_is_checked(line):
