@@ -237,7 +237,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = BASELINES=$(BASELINES) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-without-sensors test-blender blender-extension test-vtk windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
+.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-without-sensors test-blender blender-extension test-vtk test-engine windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -412,6 +412,20 @@ test-vtk:
 	@.ci/packages vtk
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) tests/vtk/run.sh
+
+# Soft bodies of Bullet, whose frames cscd makes safe; nothing else needs Bullet. ENGINE: options of the program, such as
+# "--scene press". PAGE=--write draws the pictures of docs/solver/in-your-engine.md.
+ENGINE ?=
+ENGINE_OBJECTS := $(patsubst %.cpp,$(OBJECTS)/%.o,$(wildcard tests/engine/*.cpp))
+$(ENGINE_OBJECTS): CPPFLAGS += $(patsubst -I%,-isystem %,$(shell pkg-config --cflags bullet))
+$(BUILD)/tests/engine/soft_bodies: $(ENGINE_OBJECTS) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CXX) $(LINK_ALL) -o $@ $^ $(shell pkg-config --libs bullet) -lm
+test-engine:
+	@.ci/packages engine
+	@$(MAKE) --no-print-directory tool $(BUILD)/tests/engine/soft_bodies
+	@BUILD=$(BUILD) PAGE=$(PAGE) tests/engine/run.sh $(ENGINE)
 
 # The shards of a list on the ranks of MPI; nothing else needs MPI. With another compiler wrapper: MPICC=...
 MPICC ?= mpicc
@@ -639,6 +653,8 @@ help:
 	@echo '               (installs blender); PAGE=--write puts what the steps print into the page, and draws its pictures'
 	@echo 'make blender-extension   the extension of Blender, with the Python package in it, in build/blender'
 	@echo 'make test-vtk   what --vtk writes, read by VTK and compared with the other outputs (installs python3-vtk9)'
+	@echo 'make test-engine   soft bodies of Bullet, made safe frame by frame: five minutes (installs libbullet-dev; ENGINE="--scene press");'
+	@echo '               PAGE=--write draws the pictures of docs/solver/in-your-engine.md'
 	@echo 'make cscd-mpi       build/release/cscd-mpi, for docs/artist/engines.md: needs MPI, as Debian has it in libopenmpi-dev'
 	@echo 'make test-farm      shards that the engines of docs/artist/engines.md start, and whose node dies (installs these)'
 	@echo 'make windows   the tool and the library for Windows, in build/x86_64-w64-mingw32 (installs mingw-w64); make windows-zip: to give'
@@ -909,4 +925,4 @@ include packaging/wasm/rules.mk
 endif
 
 -include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \
-         $(MACHINE_LEVELS:.o=.d) $(VOLUME_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d
+         $(MACHINE_LEVELS:.o=.d) $(VOLUME_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d) $(OBJECTS)/tests/blender/print_frames.d $(OBJECTS)/tests/python/oracle.d $(ENGINE_OBJECTS:.o=.d)
