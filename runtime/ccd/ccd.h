@@ -292,6 +292,15 @@ typedef struct proximity_outcomes {
 typedef void proximity_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                               const separations_x8 *limits, proximity_outcomes *out);
 
+/* The nearest points of eight pairs at the start, for pairs that the kernel above has found within their limits: u and v are
+ * the same; the distance is connection_length of the connection between the points, and the normal is the offset's direction. */
+typedef struct nearest_points_x8 {
+    double u[LANES], v[LANES], normal[3][LANES], distance[LANES];
+} nearest_points_x8;
+
+typedef void nearest_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            nearest_points_x8 *out);
+
 typedef struct ccd_kernels {
     /* Keep the pairs that signs leave undecided, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */
@@ -309,6 +318,9 @@ typedef struct ccd_kernels {
 
     /* Distances of pairs a[0], b[0] to a[7], b[7]. */
     proximity_kernel *proximity_vf, *proximity_ee;
+
+    /* Their nearest points. */
+    nearest_kernel *nearest_vf, *nearest_ee;
 } ccd_kernels;
 
 DECLARE_KERNELS(ccd_kernels);

@@ -9,6 +9,7 @@
 
 describe_kernel SIMD_NAME(describe_vf), SIMD_NAME(describe_ee);
 proximity_kernel SIMD_NAME(proximity_vf), SIMD_NAME(proximity_ee);
+nearest_kernel SIMD_NAME(nearest_vf), SIMD_NAME(nearest_ee);
 
 /* ---- products of many vectors of three doubles, summed up from left to right as in vec3.h -------------- */
 
@@ -28,43 +29,39 @@ typedef struct points_x8 {
     f64w x0[4][3], x1[4][3]; /* points as in elementary_query, then coordinates */
 } points_x8;
 
-static inline void load_both_ends(const feature_source *source, uint32_t vertices[4][WIDTH], points_x8 *out) {
+static inline void name_points(const feature_source *source, cscd_contact_kind kind, const uint32_t *a,
+                               const uint32_t *b, uint32_t vertices[4][WIDTH]) {
+    for (int lane = 0; lane < WIDTH; lane++) {
+        if (kind == CSCD_CONTACT_VF) {
+            const uint32_t *corners = source->triangles[b[lane]];
+            vertices[0][lane] = a[lane];
+            for (int i = 0; i < 3; i++) vertices[1 + i][lane] = corners[i];
+        } else {
+            const uint32_t *ends_a = source->edges[a[lane]], *ends_b = source->edges[b[lane]];
+            for (int i = 0; i < 2; i++) {
+                vertices[i][lane] = ends_a[i];
+                vertices[2 + i][lane] = ends_b[i];
+            }
+        }
+    }
+}
+
+static inline void load_features(const feature_source *source, cscd_contact_kind kind, const uint32_t *a,
+                                 const uint32_t *b, points_x8 *out) {
+    uint32_t vertices[4][WIDTH];
+    name_points(source, kind, a, b, vertices);
     for (int i = 0; i < 4; i++) {
         f64w_load_points(source->x0, vertices[i], out->x0[i]);
         f64w_load_points(source->x1, vertices[i], out->x1[i]);
     }
 }
 
-static inline void load_vf(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                           points_x8 *out) {
+/* Loads x0 alone. */
+static inline void load_features_at_start(const feature_source *source, cscd_contact_kind kind,
+                                          const uint32_t *a, const uint32_t *b, points_x8 *out) {
     uint32_t vertices[4][WIDTH];
-    for (int lane = 0; lane < WIDTH; lane++) {
-        const uint32_t *corners = source->triangles[b[lane]];
-        vertices[0][lane] = a[lane];
-        for (int i = 0; i < 3; i++) vertices[1 + i][lane] = corners[i];
-    }
-    load_both_ends(source, vertices, out);
-}
-
-static inline void load_ee(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                           points_x8 *out) {
-    uint32_t vertices[4][WIDTH];
-    for (int lane = 0; lane < WIDTH; lane++) {
-        const uint32_t *ends_a = source->edges[a[lane]], *ends_b = source->edges[b[lane]];
-        for (int i = 0; i < 2; i++) {
-            vertices[i][lane] = ends_a[i];
-            vertices[2 + i][lane] = ends_b[i];
-        }
-    }
-    load_both_ends(source, vertices, out);
-}
-
-static inline void load_features(const feature_source *source, cscd_contact_kind kind, const uint32_t *a,
-                                 const uint32_t *b, points_x8 *out) {
-    if (kind == CSCD_CONTACT_VF)
-        load_vf(source, a, b, out);
-    else
-        load_ee(source, a, b, out);
+    name_points(source, kind, a, b, vertices);
+    for (int i = 0; i < 4; i++) f64w_load_points(source->x0, vertices[i], out->x0[i]);
 }
 
 /* Decides the pairs i to i + WIDTH - 1 of the eight. */

@@ -316,4 +316,6 @@ const ccd_kernels SIMD_NAME(ccd_kernels) = {
     .describe_ee = SIMD_NAME(describe_ee),
     .proximity_vf = SIMD_NAME(proximity_vf),
     .proximity_ee = SIMD_NAME(proximity_ee),
+    .nearest_vf = SIMD_NAME(nearest_vf),
+    .nearest_ee = SIMD_NAME(nearest_ee),
 };

@@ -16,7 +16,7 @@ static inline f64w clamp_to_unit(f64w x) {
 /* The share of `side` up to the point nearest to `to`, both from the origin; 0 where side has no length. */
 static inline f64w share_along(const f64w to[3], const f64w side[3]) {
     f64w squared = dot_x8(side, side), zero = f64w_all(0.0);
-    return f64w_select(f64w_below(zero, squared), clamp_to_unit(dot_x8(to, side) / squared), zero);
+    return maskw_choose(maskw_below(zero, squared), clamp_to_unit(dot_x8(to, side) / squared), zero);
 }
 
 /* The offset c - u a - v b. */
@@ -27,15 +27,15 @@ static inline nearest offset_between(const f64w c[3], const f64w a[3], const f64
     return n;
 }
 
-static inline void take_lanes(uint32_t lanes, const nearest *from, nearest *to) {
-    to->u = f64w_select(lanes, from->u, to->u);
-    to->v = f64w_select(lanes, from->v, to->v);
-    for (int k = 0; k < 3; k++) to->offset[k] = f64w_select(lanes, from->offset[k], to->offset[k]);
-    to->squared = f64w_select(lanes, from->squared, to->squared);
+static inline void take_lanes(maskw lanes, const nearest *from, nearest *to) {
+    to->u = maskw_choose(lanes, from->u, to->u);
+    to->v = maskw_choose(lanes, from->v, to->v);
+    for (int k = 0; k < 3; k++) to->offset[k] = maskw_choose(lanes, from->offset[k], to->offset[k]);
+    to->squared = maskw_choose(lanes, from->squared, to->squared);
 }
 
 static inline void take_nearer(const nearest *from, nearest *to) {
-    take_lanes(f64w_below(from->squared, to->squared), from, to);
+    take_lanes(maskw_below(from->squared, to->squared), from, to);
 }
 
 /* Projects the offset onto the plane of a and b, and adds the result to the parameters. */
@@ -66,8 +66,8 @@ static inline nearest nearest_in_triangle(const f64w c[3], const f64w a[3], cons
     nearest inner = offset_between(c, a, b, zero, zero);
     inner = add_projection(c, a, b, normal, area, &inner);
     inner = add_projection(c, a, b, normal, area, &inner); /* twice: thin triangles */
-    uint32_t inside = f64w_below(zero, area) & f64w_at_most(zero, inner.u) & f64w_at_most(zero, inner.v) &
-                      f64w_at_most(inner.u + inner.v, one);
+    maskw inside = maskw_below(zero, area) & maskw_at_most(zero, inner.u) & maskw_at_most(zero, inner.v) &
+                   maskw_at_most(inner.u + inner.v, one);
     take_lanes(inside, &inner, &best);
     return best;
 }
@@ -96,7 +96,7 @@ static inline nearest nearest_of_edges(const f64w c[3], const f64w a[3], const f
     f64w v = share_along(side, b);
     for (int k = 0; k < 3; k++) at_v[k] = c[k] + v * b[k];
     other = offset_between(minus_c, back, b, share_along(at_v, a), v);
-    take_lanes(f64w_below(zero, area) & f64w_at_most(other.squared, best.squared), &other, &best);
+    take_lanes(maskw_below(zero, area) & maskw_at_most(other.squared, best.squared), &other, &best);
     return best;
 }
 
@@ -124,11 +124,16 @@ static inline f64w extent_of(const f64w a[3], const f64w b[3], const f64w c[3]) 
 /* The powers of two that bring what is not 0 to [1/2, 1): exact factors, so that results are those of any
  * other scale, and products neither over- nor underflow. */
 static inline f64w to_one(f64w extent) {
-    double factors[WIDTH];
-    memcpy(factors, &extent, sizeof extent);
-    for (int lane = 0; lane < WIDTH; lane++) factors[lane] = power_of_two(-exponent_of(factors[lane]));
-    memcpy(&extent, factors, sizeof extent);
-    return extent;
+    const int64_t exponent = 0x7ff0000000000000, largest = 2045;
+    i64w bits =
+        ((i64w){0} + (largest << 52)) - ((i64w)extent & exponent); /* of 2^-e, for an extent below 2^e */
+    return maskw_choose(maskw_at_most(f64w_all(0x1p-1022), extent), (f64w)bits, f64w_all(1.0));
+}
+
+/* 1 / x of powers of two from 2^-1022 to 2^1022, exactly: the exponent, 1023 + e, becomes 1023 - e. */
+static inline f64w inverse_of_power(f64w x) {
+    i64w bits = ((i64w){0} + 0x7fe0000000000000) - (i64w)x;
+    return (f64w)bits;
 }
 
 /* The vectors between the points at one end: a vertex c and the triangle of a and b, or the edge a and the
@@ -154,16 +159,42 @@ static inline void scale_vectors(vectors_at_end *v, f64w factor) {
     }
 }
 
-static inline void store_nearest(const nearest *n, f64w distance, f64w factor, int i,
-                                 proximity_outcomes *out) {
+static inline void store_nearest(const nearest *n, f64w distance, f64w back, int i, proximity_outcomes *out) {
     memcpy(out->u + i, &n->u, sizeof n->u);
     memcpy(out->v + i, &n->v, sizeof n->v);
-    distance /= factor;
+    distance *= back;
     memcpy(out->distance + i, &distance, sizeof distance);
     for (int k = 0; k < 3; k++) {
-        f64w offset = n->offset[k] / factor;
+        f64w offset = n->offset[k] * back;
         memcpy(out->offset[k] + i, &offset, sizeof offset);
     }
+}
+
+/* The vectors at the start and at the end, which are the same at one moment, brought below 1. */
+typedef struct vectors_at_ends {
+    vectors_at_end start, end;
+    f64w factor;
+} vectors_at_ends;
+
+static inline void vectors_at_moment(points_x8 *p, cscd_contact_kind kind, vectors_at_ends *out) {
+    vectors_at(p->x0, kind, &out->start);
+    out->factor = to_one(extent_of(out->start.a, out->start.b, out->start.c));
+    scale_vectors(&out->start, out->factor);
+}
+
+static inline void vectors_at_both(points_x8 *p, cscd_contact_kind kind, vectors_at_ends *out) {
+    vectors_at_end *start = &out->start, *end = &out->end;
+    vectors_at(p->x0, kind, start);
+    vectors_at(p->x1, kind, end);
+    out->factor =
+        to_one(f64w_max(extent_of(start->a, start->b, start->c), extent_of(end->a, end->b, end->c)));
+    scale_vectors(start, out->factor);
+    scale_vectors(end, out->factor);
+}
+
+static inline nearest nearest_of(const vectors_at_end *v, cscd_contact_kind kind) {
+    return kind == CSCD_CONTACT_VF ? nearest_in_triangle(v->c, v->a, v->b)
+                                   : nearest_of_edges(v->c, v->a, v->b);
 }
 
 /* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the offset is off by 1 + 2 + 2
@@ -174,50 +205,97 @@ static inline void store_nearest(const nearest *n, f64w distance, f64w factor, i
  * the tolerance are left to the test that knows it. So are those within 2^-38 beyond it: no point is farther
  * than 2 from the first one, so the finest tolerance (SEPARATION_FINEST) is less, and at the next start the
  * pair surely exceeds its distance, by 2^-40 of that extent (floors.md, lemma 3). */
-static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i, const separations_x8 *limits,
-                                    proximity_outcomes *out) {
-    vectors_at_end start, end;
+static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, bool moment, int i,
+                                    const separations_x8 *limits, proximity_outcomes *out) {
+    vectors_at_ends v;
     f64w limit, tolerance;
     memcpy(&limit, limits->distance + i, sizeof limit);
     memcpy(&tolerance, limits->tolerance + i, sizeof tolerance);
     f64w error = f64w_all(0x1p-45), direction[3];
-    vectors_at(p->x0, kind, &start);
-    vectors_at(p->x1, kind, &end);
-    f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
-    f64w factor = to_one(extent), near = limit * factor;
-    f64w far = near + tolerance * factor + 0x1p-38;
-    scale_vectors(&start, factor);
-    scale_vectors(&end, factor);
-    nearest n = kind == CSCD_CONTACT_VF ? nearest_in_triangle(start.c, start.a, start.b)
-                                        : nearest_of_edges(start.c, start.a, start.b);
+    if (moment)
+        vectors_at_moment(p, kind, &v);
+    else
+        vectors_at_both(p, kind, &v);
+    f64w near = limit * v.factor;
+    f64w far = near + tolerance * v.factor + 0x1p-38;
+    nearest n = nearest_of(&v.start, kind);
     f64w distance = f64w_sqrt(n.squared);
     direction_of(&n, distance, direction);
-    f64w gap = gap_along(direction, kind, start.c, start.a, start.b);
-    f64w gap_at_end = gap_along(direction, kind, end.c, end.a, end.b);
+    f64w gap = gap_along(direction, kind, v.start.c, v.start.a, v.start.b), least = gap;
+    if (!moment) least = f64w_min(gap, gap_along(direction, kind, v.end.c, v.end.a, v.end.b));
     uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
     uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
-    out->apart |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
+    out->apart |= (sound & f64w_below(far, least - error)) << i;
     out->within |= (sound & nearest_indeed & f64w_at_most(distance + error, near)) << i;
-    store_nearest(&n, distance, factor, i, out);
+    store_nearest(&n, distance, inverse_of_power(v.factor), i, out);
 }
 
+/* Both ends are one moment where their positions are the same array. */
 static inline void decide_eight_by_proximity(const feature_source *source, const uint32_t *a,
-                                             const uint32_t *b, cscd_contact_kind kind,
+                                             const uint32_t *b, cscd_contact_kind kind, bool moment,
                                              const separations_x8 *limits, proximity_outcomes *out) {
     out->apart = out->within = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
-        load_features(source, kind, a + i, b + i, &points);
-        decide_proximity(&points, kind, i, limits, out);
+        if (moment)
+            load_features_at_start(source, kind, a + i, b + i, &points);
+        else
+            load_features(source, kind, a + i, b + i, &points);
+        decide_proximity(&points, kind, moment, i, limits, out);
     }
 }
 
 void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              const separations_x8 *limits, proximity_outcomes *out) {
-    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_VF, limits, out);
+    if (source->x0 == source->x1)
+        decide_eight_by_proximity(source, a, b, CSCD_CONTACT_VF, true, limits, out);
+    else
+        decide_eight_by_proximity(source, a, b, CSCD_CONTACT_VF, false, limits, out);
 }
 
 void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              const separations_x8 *limits, proximity_outcomes *out) {
-    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_EE, limits, out);
+    if (source->x0 == source->x1)
+        decide_eight_by_proximity(source, a, b, CSCD_CONTACT_EE, true, limits, out);
+    else
+        decide_eight_by_proximity(source, a, b, CSCD_CONTACT_EE, false, limits, out);
+}
+
+/* ---- nearest points ---------------------------------------------------------------------------------------- */
+
+/* The same operations as connection_length, of a vector that is not 0. */
+static inline f64w length_of(const f64w v[3]) {
+    f64w largest = f64w_max(f64w_abs(v[0]), f64w_max(f64w_abs(v[1]), f64w_abs(v[2]))), scaled[3];
+    for (int k = 0; k < 3; k++) scaled[k] = v[k] / largest;
+    return largest * f64w_sqrt(dot_x8(scaled, scaled));
+}
+
+/* The offset is what connection_between sums up from the weights of the points, up to the power of two, and divided by its length
+ * it is what decide_proximity has compared with the limit. */
+static inline void find_eight_nearest(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                                      cscd_contact_kind kind, nearest_points_x8 *out) {
+    for (int i = 0; i < LANES; i += WIDTH) {
+        points_x8 points;
+        vectors_at_ends v;
+        f64w normal[3];
+        load_features_at_start(source, kind, a + i, b + i, &points);
+        vectors_at_moment(&points, kind, &v);
+        nearest n = nearest_of(&v.start, kind);
+        f64w distance = length_of(n.offset) * inverse_of_power(v.factor);
+        direction_of(&n, f64w_sqrt(n.squared), normal);
+        memcpy(out->u + i, &n.u, sizeof n.u);
+        memcpy(out->v + i, &n.v, sizeof n.v);
+        memcpy(out->distance + i, &distance, sizeof distance);
+        for (int k = 0; k < 3; k++) memcpy(out->normal[k] + i, &normal[k], sizeof normal[k]);
+    }
+}
+
+void SIMD_NAME(nearest_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                           nearest_points_x8 *out) {
+    find_eight_nearest(source, a, b, CSCD_CONTACT_VF, out);
+}
+
+void SIMD_NAME(nearest_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                           nearest_points_x8 *out) {
+    find_eight_nearest(source, a, b, CSCD_CONTACT_EE, out);
 }

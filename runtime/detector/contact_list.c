@@ -12,10 +12,10 @@ cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, 
                                   size_t item_size, size_t key_size) {
     if (count <= buffer->capacity && buffer->keys != NULL) return CSCD_OK;
     result_buffer grown = {.capacity = room_with_spare(count)};
-    grown.items = context_allocate(context, grown.capacity, item_size);
+    if (item_size > 0) grown.items = context_allocate(context, grown.capacity, item_size);
     grown.keys = context_allocate(context, grown.capacity, key_size);
     grown.spare_keys = context_allocate(context, grown.capacity, key_size);
-    if (grown.items == NULL || grown.keys == NULL || grown.spare_keys == NULL) {
+    if ((item_size > 0 && grown.items == NULL) || grown.keys == NULL || grown.spare_keys == NULL) {
         result_buffer_free(context, &grown);
         return CSCD_OUT_OF_MEMORY;
     }
@@ -33,10 +33,10 @@ static void buffer_free_keys(cscd_context *context, result_buffer *buffer) {
 
 /* The room of a long list is made in two steps, so that whoever fills it may give back other memory in between: items that
  * hold anything, and then the keys, just enough of them. */
-static cscd_status buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
+cscd_status result_buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
                                         size_t item_size) {
     buffer_free_keys(context, buffer);
-    if (count <= buffer->capacity) return CSCD_OK;
+    if (count <= buffer->capacity && buffer->items != NULL) return CSCD_OK;
     result_buffer_free(context, buffer);
     const size_t room = room_with_spare(count);
     buffer->items = context_reserve(context, room, item_size);
@@ -134,7 +134,8 @@ static size_t move_worker(cscd_context *context, contact_worker *worker, const e
 
 /* The same for long lists, which are never there twice: the keys name places of the items. */
 static cscd_status gather_long(search_space *s, const exclusions *e, result_buffer *buffer, size_t *count) {
-    cscd_status status = buffer_reserve_items(s->context, buffer, count_found(s), sizeof(cscd_contact));
+    cscd_status status =
+        result_buffer_reserve_items(s->context, buffer, count_found(s), sizeof(cscd_contact));
     if (status != CSCD_OK) return status;
     cscd_contact *items = buffer->items;
     size_t kept = 0;

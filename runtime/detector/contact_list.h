@@ -10,10 +10,14 @@ typedef struct result_buffer {
     size_t capacity;
 } result_buffer;
 
-/* Makes room for count items of item_size bytes and as many keys of key_size bytes, always the same sizes for one
+/* Makes room for count items of item_size bytes, 0 for none, and as many keys of key_size bytes, always the same sizes for one
  * buffer. What the buffer held is lost. */
 cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count,
                                   size_t item_size, size_t key_size);
+
+/* Makes room for items alone, which may hold anything, and gives back the keys. */
+cscd_status result_buffer_reserve_items(cscd_context *context, result_buffer *buffer, size_t count,
+                                        size_t item_size);
 
 void result_buffer_free(cscd_context *context, result_buffer *buffer);
 

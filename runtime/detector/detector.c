@@ -151,7 +151,8 @@ void detector_free(cscd_detector *d) {
     result_buffer_free(context, &d->results.contacts);
     result_buffer_free(context, &d->results.proximities);
     result_buffer_free(context, &d->results.intersections);
-    result_buffer_free(context, &d->results.names);
+    near_list_free(context, &d->results.near);
+    result_buffer_free(context, &d->results.repetitions);
     surface_answers_free(context, d->results.answers);
     part_labels_free(context, &d->config.parts);
     part_labels_free(context, &d->config.grouping);

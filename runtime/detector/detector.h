@@ -5,6 +5,7 @@
 #include "runtime/detector/config.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/interval.h"
+#include "runtime/detector/near_list.h"
 #include "runtime/detector/search.h"
 #include "runtime/detector/start_knowledge.h"
 #include "runtime/detector/waiting.h"
@@ -15,7 +16,8 @@ typedef struct detector_results {
     cscd_timings timings;
     cscd_counters counters;
     result_buffer contacts, proximities, intersections, contact_parts, candidates;
-    result_buffer names;             /* of proximities, while repetitions are found */
+    near_list near;
+    result_buffer repetitions;       /* of near pairs, while they are found */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
     part_summer part_sums;
     cscd_part_pairs part_pairs; /* what these have found last */

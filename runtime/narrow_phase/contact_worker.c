@@ -51,24 +51,26 @@ void contact_worker_add(cscd_context *context, contact_worker *worker, cscd_cont
     contact->bounded = bounded;
 }
 
-static bool make_candidate_room(cscd_context *context, contact_worker *worker, candidate_list *list,
-                                size_t count) {
-    if (list->count + count <= list->capacity) return true;
-    size_t capacity = 2 * list->capacity + FEATURE_LIST_CAPACITY;
-    uint32_t(*grown)[2] = context_grow(context, list->pairs, list->count, capacity, sizeof *list->pairs);
-    if (grown == NULL) {
-        worker->out_of_memory = true;
-        return false;
-    }
+bool contact_worker_reserve_candidates(cscd_context *context, contact_worker *worker, cscd_contact_kind kind,
+                                       size_t count) {
+    candidate_list *list = &worker->candidates[kind];
+    if (count <= list->capacity) return true;
+    uint32_t(*grown)[2] = context_grow(context, list->pairs, list->count, count, sizeof *list->pairs);
+    if (grown == NULL) return false;
     list->pairs = grown;
-    list->capacity = capacity;
+    list->capacity = count;
     return true;
 }
 
 void contact_worker_add_candidates(cscd_context *context, contact_worker *worker, cscd_contact_kind kind,
                                    const feature_list *pairs) {
     candidate_list *list = &worker->candidates[kind];
-    if (!make_candidate_room(context, worker, list, pairs->count)) return;
+    if (list->count + pairs->count > list->capacity &&
+        !contact_worker_reserve_candidates(context, worker, kind,
+                                           2 * list->capacity + FEATURE_LIST_CAPACITY)) {
+        worker->out_of_memory = true;
+        return;
+    }
     for (uint32_t i = 0; i < pairs->count; i++) {
         list->pairs[list->count][0] = pairs->a[i];
         list->pairs[list->count++][1] = pairs->b[i];

@@ -95,3 +95,7 @@ void contact_worker_add(cscd_context *context, contact_worker *worker, cscd_cont
                         uint32_t b, const elementary_contact *where, bool bounded);
 void contact_worker_add_candidates(cscd_context *context, contact_worker *worker, cscd_contact_kind kind,
                                    const feature_list *pairs);
+
+/* Makes room for `count` candidates of a kind in all, and keeps those that are there. False: no memory. */
+bool contact_worker_reserve_candidates(cscd_context *context, contact_worker *worker, cscd_contact_kind kind,
+                                       size_t count);

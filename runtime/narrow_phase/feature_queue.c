@@ -167,6 +167,11 @@ static separation limit_of_pair(const swept_interval *interval, cscd_contact_kin
     return separation_on_ways(interval, kind, a, b, pair_separation(interval, kind, a, b));
 }
 
+/* Do all pairs of a kind have one limit, which is that of the interval? */
+static bool one_limit(const swept_interval *interval) {
+    return !interval->thick && interval->ways == NULL;
+}
+
 /* The limits of the eight pairs from i on. */
 static void load_limits(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
                         uint32_t i, separations_x8 *limits) {
@@ -177,28 +182,51 @@ static void load_limits(const swept_interval *interval, cscd_contact_kind kind, 
     }
 }
 
+/* The pairs of the eight from i on that are in a set of lanes are near each other at the start. */
+static void add_nearest(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                        uint32_t i, uint32_t lanes, const proximity_outcomes *near, contact_worker *worker) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+        uint32_t at = (uint32_t)__builtin_ctz(lanes);
+        elementary_contact contact = nearest_points(interval, kind, pairs->a[i + at], near, at);
+        add_contact(interval, kind, pairs, i + at, &contact, false, worker);
+    }
+}
+
+/* The same, by name alone; there is room in the list. */
+static void name_near(const feature_pairs *pairs, uint32_t i, uint32_t lanes, feature_list *named) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+        uint32_t at = i + (uint32_t)__builtin_ctz(lanes);
+        named->count = feature_list_put(named, named->count, pairs->a[at], pairs->b[at], 1);
+    }
+}
+
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
 static void decide_proximity(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_worker *worker) {
     const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     proximity_kernel *kernel = kind == CSCD_CONTACT_VF ? table->proximity_vf : table->proximity_ee;
     feature_source source = swept_interval_source(interval);
+    feature_list named;
+    separations_x8 limits;
     uint32_t kept = 0;
-    if (pairs->count > 0) repeat_last(pairs);
+    named.count = 0;
+    if (pairs->count > 0) {
+        repeat_last(pairs);
+        load_limits(interval, kind, pairs, 0, &limits);
+    }
     for (uint32_t i = 0; i < pairs->count; i += LANES) {
         proximity_outcomes near;
-        separations_x8 limits;
         uint32_t real = lanes_from(pairs, i);
-        load_limits(interval, kind, pairs, i, &limits);
+        if (i > 0 && !one_limit(interval)) load_limits(interval, kind, pairs, i, &limits);
         kernel(&source, pairs->a + i, pairs->b + i, &limits, &near);
         uint32_t within = interval->floor_ratio > 0.0 ? 0 : near.within;
-        for (uint32_t lanes = real & within; lanes != 0; lanes &= lanes - 1) {
-            uint32_t at = (uint32_t)__builtin_ctz(lanes);
-            elementary_contact contact = nearest_points(interval, kind, pairs->a[i + at], &near, at);
-            add_contact(interval, kind, pairs, i + at, &contact, false, worker);
-        }
+        if (interval->naming)
+            name_near(pairs, i, real & within, &named);
+        else
+            add_nearest(interval, kind, pairs, i, real & within, &near, worker);
         kept = keep_lanes(pairs, i, real & ~within & ~near.apart, kept);
     }
+    if (named.count > 0) contact_worker_add_candidates(interval->mesh->context, worker, kind, &named);
     pairs->count = kept;
 }
 

@@ -35,6 +35,7 @@ typedef struct swept_interval {
     double beyond;      /* volumes are compared within so much more than the pairs' distances */
     double floor_ratio; /* above 0: pairs that start nearer than they should have a floor instead */
     bool collecting;    /* pairs of features become the workers' candidates instead of being tested */
+    bool naming;        /* pairs at rest that kernels find near become candidates, all others contacts */
 } swept_interval;
 
 /* Returns the part of an interval that the kernels read. */

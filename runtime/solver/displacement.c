@@ -380,13 +380,19 @@ static size_t keep_held(cscd_detector *d, const double *x0, const division_plane
     size_t held = 0;
     for (size_t i = 0; i < planes->count; i++) {
         if (planes->planes[i].room[0] >= 0.0) continue;
-        if (items[i].count == 0) proximity_complete(d, x0, i);
-        items[held++] = items[i];
+        if (items[i].count == 0)
+            proximity_complete(d, x0, i, &items[held++]);
+        else
+            items[held++] = items[i];
     }
     return held;
 }
 
 /* ---- what is known ------------------------------------------------------------------------------------- */
+
+static void taint_if_left_out(const cscd_detector *d, const tainting *t, const cscd_contact *near) {
+    if (exclusions_cover(&d->config.exclusions, near->kind, near->a, near->b, NULL)) tainting_look(t, near);
+}
 
 /* Pairs that the caller leaves out may touch on the way, so their triangles lose what is known of them. */
 static void taint_left_out(cscd_detector *d) {
@@ -400,10 +406,15 @@ static void taint_left_out(cscd_detector *d) {
                   INFINITY};
     memset(d->interval.closes, 0, d->mesh->component_count * sizeof *d->interval.closes);
     for (uint32_t i = 0; exclusions_any(&d->config.exclusions) && i < s->traversal.worker_count; i++) {
-        for (size_t j = 0; j < s->workers[i].count; j++) {
-            const cscd_contact *near = contact_worker_at(&s->workers[i], j);
-            if (exclusions_cover(&d->config.exclusions, near->kind, near->a, near->b, NULL))
-                tainting_look(&t, near);
+        const contact_worker *worker = &s->workers[i];
+        for (size_t j = 0; j < worker->count; j++) taint_if_left_out(d, &t, contact_worker_at(worker, j));
+        for (int kind = CSCD_CONTACT_VF; kind <= CSCD_CONTACT_EE; kind++) {
+            const candidate_list *named = &worker->candidates[kind];
+            for (size_t j = 0; j < named->count; j++) {
+                const cscd_contact near = {
+                    .kind = (cscd_contact_kind)kind, .a = named->pairs[j][0], .b = named->pairs[j][1]};
+                taint_if_left_out(d, &t, &near);
+            }
         }
     }
     list_cap_taint(&d->interval, &t);

@@ -8,10 +8,11 @@
 #include <string.h>
 
 double near_separation(const near_rules *r, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (!config_is_thick(r->config)) return r->config->limit.distance;
     const swept_interval rules = {.mesh = r->mesh,
                                   .filter = {r->mesh, &r->config->pair_rules, NULL, NULL},
                                   .limit = r->config->limit,
-                                  .thick = config_is_thick(r->config)};
+                                  .thick = true};
     return pair_separation(&rules, kind, a, b).distance;
 }
 

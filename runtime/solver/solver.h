@@ -31,10 +31,10 @@ typedef struct near_ways {
 } near_ways;
 
 /* Finds all pairs that may come within what they keep while vertices go no farther than their ways, and lists them so, with
- * kind, a, b, vertices, weights, normal and separation alone: proximity_complete fills in the rest of one item. */
+ * kind, a, b, vertices, weights, normal and separation alone: proximity_complete writes all of one item. */
 cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, const near_ways *ways,
                                    cscd_proximities *out);
-void proximity_complete(cscd_detector *d, const double *positions, size_t item);
+void proximity_complete(cscd_detector *d, const double *positions, size_t item, cscd_proximity *out);
 
 /* Makes room for the positions that a call reaches, d->reached. */
 cscd_status solver_reserve_reached(cscd_detector *d);

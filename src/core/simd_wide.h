@@ -179,6 +179,40 @@ static inline void f64w_load_points(const double *positions, const uint32_t indi
 
 #endif
 
+/* A choice between lanes that stays in the registers where the comparison leaves it; & joins two of them. */
+#if SIMD_LEVEL == SIMD_AVX512
+typedef uint32_t maskw;
+#else
+typedef i64w maskw;
+#endif
+
+static inline maskw maskw_below(f64w a, f64w b) {
+#if SIMD_LEVEL == SIMD_AVX512
+    return f64w_below(a, b);
+#else
+    return a < b;
+#endif
+}
+
+static inline maskw maskw_at_most(f64w a, f64w b) {
+#if SIMD_LEVEL == SIMD_AVX512
+    return f64w_at_most(a, b);
+#else
+    return a <= b;
+#endif
+}
+
+/* Takes a in the lanes of the mask, and b in the others. */
+static inline f64w maskw_choose(maskw mask, f64w a, f64w b) {
+#if SIMD_LEVEL == SIMD_AVX512
+    return f64w_select(mask, a, b);
+#elif SIMD_LEVEL == SIMD_AVX2
+    return _mm256_blendv_pd(b, a, (f64w)mask);
+#else
+    return (f64w)(((i64w)a & mask) | ((i64w)b & ~mask));
+#endif
+}
+
 enum { ALL_WIDTH = (1 << WIDTH) - 1 };
 
 static inline f64w f64w_all(double x) {

@@ -1,5 +1,6 @@
 /* The kernel that decides by the start of a motion which features are near and which stay apart: never
  * against the test of one pair, whose verdicts it anticipates; the same bits on every level. */
+#include "cscd/solver.h"
 #include "runtime/ccd/ccd.h"
 #include "tests/support/calls.h"
 #include "tests/support/random.h"
@@ -104,6 +105,92 @@ TEST(never_against_the_test_of_one_pair) {
     }
     print_message("  %zu near, %zu apart, %zu left open\n", sum.hits, sum.misses, sum.open);
     assert_true(sum.hits > 10000 && sum.misses > 10000 && sum.open < sum.hits + sum.misses);
+}
+
+/* ---- one moment ---------------------------------------------------------------------------------------- */
+
+static void test_eight(const ccd_kernels *table, const proximity_batch *b, const feature_source *source,
+                       bool vf, double limit, proximity_outcomes *out) {
+    separations_x8 limits;
+    for (int i = 0; i < LANES; i++) {
+        limits.distance[i] = limit;
+        limits.tolerance[i] = 1e-6 * limit;
+    }
+    memset(out, 0, sizeof *out);
+    (vf ? table->proximity_vf : table->proximity_ee)(source, vf ? b->vf_a : b->ee_a, vf ? b->faces : b->ee_b,
+                                                     &limits, out);
+}
+
+/* Where both ends are one array, the second is not looked at, and every bit is the same. */
+TEST(one_moment_as_a_motion_that_rests) {
+    static proximity_batch b;
+    size_t within = 0, apart = 0;
+    random_seed(8);
+    for (int n = 0; n < BATCHES; n++) {
+        make_batch(&b, n % 4 < 2);
+        memcpy(b.x1, b.x0, sizeof b.x0);
+        const feature_source moment = {b.x0[0], b.x0[0], b.triangles, b.edges},
+                             motion = {b.x0[0], b.x1[0], b.triangles, b.edges};
+        const double limit = pow(10.0, random_between(-4.0, 0.3));
+        for (int level = 0; level < LEVEL_COUNT; level++) {
+            if (contexts[level] == NULL) continue;
+            proximity_outcomes one, two;
+            test_eight(ccd_kernels_of(contexts[level]), &b, &moment, n % 2 == 0, limit, &one);
+            test_eight(ccd_kernels_of(contexts[level]), &b, &motion, n % 2 == 0, limit, &two);
+            assert_memory_equal(&one, &two, sizeof one);
+            within += (size_t)__builtin_popcount(one.within);
+            apart += (size_t)__builtin_popcount(one.apart);
+        }
+    }
+    assert_true(within > 1000 && apart > 1000);
+}
+
+/* The parameters are those of the verdict, the normal is that of its offset, and the distance that between the points which the
+ * weights name. */
+static void compare_nearest(const proximity_batch *b, bool vf, uint32_t i, const proximity_outcomes *found,
+                            const nearest_points_x8 *near) {
+    const cscd_contact_kind kind = vf ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
+    const double *x[4];
+    double weights[4], apart[3];
+    for (uint32_t k = 0; k < 4; k++) x[k] = b->x0[4 * i + k];
+    cscd_stencil_weights(kind, found->u[i], found->v[i], weights);
+    connection_between(x, weights, points_of_first(kind), apart);
+    assert_true(near->u[i] == found->u[i] && near->v[i] == found->v[i]);
+    assert_true(near->distance[i] == connection_length(apart));
+    for (int k = 0; k < 3; k++) {
+        assert_true(apart[k] == found->offset[k][i]);
+        assert_true(near->normal[k][i] == found->offset[k][i] / found->distance[i]);
+    }
+}
+
+/* At any scale between the least and the greatest length. */
+TEST(nearest_points_are_those_of_the_verdict) {
+    static proximity_batch b;
+    size_t compared = 0;
+    random_seed(9);
+    for (int n = 0; n < BATCHES; n++) {
+        const bool vf = n % 2 == 0;
+        const double scale = ldexp(1.0, n % 3 == 0 ? random_integer(-290, 290) : 0);
+        make_batch(&b, n % 4 < 2);
+        for (int i = 0; i < POINTS * 3; i++) b.x0[i / 3][i % 3] *= scale;
+        const feature_source source = {b.x0[0], b.x0[0], b.triangles, b.edges};
+        for (int level = 0; level < LEVEL_COUNT; level++) {
+            if (contexts[level] == NULL) continue;
+            const ccd_kernels *table = ccd_kernels_of(contexts[level]);
+            proximity_outcomes found;
+            nearest_points_x8 near;
+            test_eight(table, &b, &source, vf, 1.5 * scale, &found);
+            (vf ? table->nearest_vf : table->nearest_ee)(&source, vf ? b.vf_a : b.ee_a, vf ? b.faces : b.ee_b,
+                                                         &near);
+            for (uint32_t i = 0; i < LANES; i++) {
+                if ((found.within >> i & 1) == 0) continue;
+                compare_nearest(&b, vf, i, &found, &near);
+                compared++;
+            }
+        }
+    }
+    print_message("  %zu pairs\n", compared);
+    assert_true(compared > 10000);
 }
 
 /* ---- levels -------------------------------------------------------------------------------------------- */
