@@ -102,9 +102,12 @@ template <class T> struct element_type<T, std::void_t<decltype(std::data(std::de
 };
 template <class Container> using element_of = typename element_type<std::remove_reference_t<Container>>::type;
 
-/* Matrices of Eigen: whether their coordinates lie point by point is not for us to guess. */
+/* Matrices of Eigen, but not its vectors without gaps: whether their coordinates lie point by point is not for us to
+ * guess. */
 template <class T, class = void> constexpr bool is_matrix = false;
-template <class T> constexpr bool is_matrix<T, std::void_t<decltype(T::IsRowMajor)>> = true;
+template <class T>
+constexpr bool is_matrix<T, std::void_t<decltype(T::IsRowMajor)>> =
+    T::IsVectorAtCompileTime == 0 || T::InnerStrideAtCompileTime != 1;
 
 template <class Container>
 constexpr bool holds_positions = (is_scalar<element_of<Container>> || is_point<element_of<Container>>()) &&

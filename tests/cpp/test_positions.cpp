@@ -92,6 +92,23 @@ TEST(points_and_members) {
     s.expect(cscd::view_of(nodes, &node::shown), points);
 }
 
+/* A vector as Eigen has it. */
+struct eigen_vector : std::vector<double> {
+    using vector::vector;
+    enum { IsRowMajor = 0, IsVectorAtCompileTime = 1, InnerStrideAtCompileTime = 1 };
+};
+
+TEST(vectors_of_eigen) {
+    forms_scene s;
+    const eigen_vector start(s.x0.begin(), s.x0.end());
+    eigen_vector reached(start.size());
+    std::vector<double> expected(start.size());
+    s.expect(start, s.x1);
+    s.detector.max_step(start, s.x1, reached);
+    s.detector.max_step(s.x0, s.x1, expected);
+    assert_true(std::equal(reached.begin(), reached.end(), expected.begin()));
+}
+
 TEST(columns) {
     forms_scene s;
     const std::size_t n = s.vertex_count();

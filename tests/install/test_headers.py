@@ -78,7 +78,8 @@ def test_macros_and_warnings_of_a_host():
         ("std::vector<odd> points; auto view = cscd::view_of(points);", "specialize cscd::scalar_of"),
         ("std::vector<odd> points; cscd::positions given(points);", "specialize cscd::scalar_of"),
         ("std::vector<int> numbers; cscd::positions given(numbers);", "specialize cscd::scalar_of"),
-        ("matrix rows; cscd::positions given(rows);", "say view_of_columns"),
+        ("matrix<0, 1> rows; cscd::positions given(rows);", "say view_of_columns"),
+        ("matrix<1, 2> with_gaps; cscd::positions given(with_gaps);", "say view_of_columns"),
     ],
 )
 def test_mistakes_do_not_compile(code, says):
@@ -86,7 +87,11 @@ def test_mistakes_do_not_compile(code, says):
     known = """
         #include <cscd/cscd.hpp>
         struct odd { int weight; double place[3]; };
-        struct matrix { enum { IsRowMajor = 0 }; const float *data() const; std::size_t size() const; };"""
+        template <int vector, int stride> struct matrix { /* as those of Eigen */
+            enum { IsRowMajor = 0, IsVectorAtCompileTime = vector, InnerStrideAtCompileTime = stride };
+            const float *data() const;
+            std::size_t size() const;
+        };"""
     assert says in compile_in_cpp(f"{known}\nint main() {{ {code} }}")
     assert compile_in_cpp(f"{known}\nint main() {{ std::vector<double> x(9); cscd::view_of(cscd::span<double>(x)); }}") == ""
 
