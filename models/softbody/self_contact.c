@@ -1,4 +1,5 @@
-/* The response to contacts of a body with itself: each pair that cscd reports is kept on its side, gently. */
+/* The response to contacts of a body with itself: each pair that cscd reports is kept on its side, gently. It is not
+ * cscd_detector_make_safe, because recordings are made for detectors: after that there would be nothing to find. */
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
 #include "models/softbody/softbody.h"
