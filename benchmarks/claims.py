@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Writes docs/about/measurements.md from the measured tables in benchmarks/results: `make claims`.
+"""Writes docs/about/measurements.md, and tables in other pages, from the measured tables in benchmarks/results: `make claims`.
 
 A file of results has a title, what was measured (command, commit, date, machine), its tables, and the claims that the page
 makes of them. A table that the page shows says with which columns and rows,
-and how many claims stand before it. With --check nothing is written, and the status is 1 where the page is not what the results say.
+and how many claims stand before it. Another page has the table of a file between the lines `<!-- table of NAME -->` and `<!-- end -->`.
+With --check nothing is written, and the status is 1 where a page is not what the results say.
 """
 import json
+import re
 import sys
 import textwrap
 from pathlib import Path
@@ -59,14 +61,26 @@ def page_of_claims():
     return '\n\n'.join([OPENING.rstrip(), *map(section_of, SECTIONS)]) + '\n'
 
 
+def with_tables(page):
+    """A page whose tables are those of the results."""
+    def filled(match):
+        result = json.loads((RESULTS / f'{match[2]}.json').read_text(encoding='utf-8'))
+        return match[1] + '\n\n'.join(table_of(table) for table in result['tables'] if 'shown' in table) + '\n'
+    return re.sub(r'(<!-- table of (\S+) -->\n).*?(?=<!-- end -->)', filled, page.read_text(encoding='utf-8'), flags=re.S)
+
+
 def main():
-    page = page_of_claims()
-    if sys.argv[1:] != ['--check']:
-        PAGE.write_text(page, encoding='utf-8')
-    elif PAGE.read_text(encoding='utf-8') != page:
-        print('docs/about/measurements.md is not what benchmarks/results says; run make claims')
-        return 1
-    return 0
+    status = 0
+    pages = {PAGE: page_of_claims(), **{page: with_tables(page) for page in sorted(ROOT.glob('docs/*/*.md')) if page != PAGE}}
+    for place, page in pages.items():
+        if place.exists() and place.read_text(encoding='utf-8') == page:
+            continue
+        if sys.argv[1:] != ['--check']:
+            place.write_text(page, encoding='utf-8')
+        else:
+            print(f'{place.relative_to(ROOT)} is not what benchmarks/results says; run make claims')
+            status = 1
+    return status
 
 
 sys.exit(main())
