@@ -51,6 +51,7 @@ typedef struct contact_worker {
     uint64_t feature_pairs;
     uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by the level that decided them */
     uint64_t separations;                     /* tests for minimum separation */
+    uint64_t parted;                          /* near pairs that their motion does not bring together */
     bool out_of_memory;
     /* Per component that is culled: pairs of its triangles that came here; NULL: nobody asks. */
     uint32_t *kept;

@@ -169,7 +169,7 @@ static separation limit_of_pair(const swept_interval *interval, cscd_contact_kin
 
 /* Do all pairs of a kind have one limit, which is that of the interval? */
 static bool one_limit(const swept_interval *interval) {
-    return !interval->thick && interval->ways == NULL;
+    return !interval->thick && interval->motion == NULL;
 }
 
 /* The limits of the eight pairs from i on. */
@@ -200,11 +200,55 @@ static void name_near(const feature_pairs *pairs, uint32_t i, uint32_t lanes, fe
     }
 }
 
+/* How far some vertices of a pair go along a direction at the most; 0 if they go back. */
+static double way_along(const swept_interval *interval, const uint32_t *vertices, int count,
+                        const double direction[3], double sign) {
+    double farthest = 0.0;
+    for (int i = 0; i < count; i++) {
+        const double *m = interval->motion->motions + (size_t)vertices[i] * 3;
+        farthest =
+            larger_way(farthest, sign * (m[0] * direction[0] + m[1] * direction[1] + m[2] * direction[2]));
+    }
+    return farthest;
+}
+
+/* The sides of a pair go towards each other by less than what is between them and what they have to keep, with some of it to
+ * spare: planes across the offset would stop neither (docs/theory/displacement-bounds.md, lemma 4). All is times the distance,
+ * which is the length of the offset. */
+static bool motion_parts(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                         const proximity_outcomes *near, uint32_t lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    const motion_bounds *motion = interval->motion;
+    const double offset[3] = {near->offset[0][lane], near->offset[1][lane], near->offset[2][lane]};
+    const double distance = near->distance[lane], room = 0.98 * distance - motion->kept - motion->rounding;
+    const bool vf = kind == CSCD_CONTACT_VF;
+    if (!(room > 0.0)) return false;
+    const double of_a = way_along(interval, vf ? &a : mesh->edges[a], vf ? 1 : 2, offset, -1.0),
+                 of_b =
+                     way_along(interval, vf ? mesh->triangles[b] : mesh->edges[b], vf ? 3 : 2, offset, 1.0);
+    return of_a + of_b <= room * distance;
+}
+
+/* Returns the lanes without those pairs, which are counted. */
+static uint32_t drop_parted(const swept_interval *interval, cscd_contact_kind kind,
+                            const feature_pairs *pairs, uint32_t i, uint32_t lanes,
+                            const proximity_outcomes *near, contact_worker *worker) {
+    uint32_t kept = lanes;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const uint32_t at = (uint32_t)__builtin_ctz(lanes);
+        if (!motion_parts(interval, kind, pairs->a[i + at], pairs->b[i + at], near, at)) continue;
+        kept &= ~(1u << at);
+        worker->parted++;
+    }
+    return kept;
+}
+
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
 static void decide_proximity(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_worker *worker) {
     const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     proximity_kernel *kernel = kind == CSCD_CONTACT_VF ? table->proximity_vf : table->proximity_ee;
+    const bool counts = interval->naming && interval->motion != NULL && interval->motion->motions != NULL;
     feature_source source = swept_interval_source(interval);
     feature_list named;
     separations_x8 limits;
@@ -220,10 +264,12 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
         if (i > 0 && !one_limit(interval)) load_limits(interval, kind, pairs, i, &limits);
         kernel(&source, pairs->a + i, pairs->b + i, &limits, &near);
         uint32_t within = interval->floor_ratio > 0.0 ? 0 : near.within;
+        uint32_t listed = real & within;
+        if (counts) listed = drop_parted(interval, kind, pairs, i, listed, &near, worker);
         if (interval->naming)
-            name_near(pairs, i, real & within, &named);
+            name_near(pairs, i, listed, &named);
         else
-            add_nearest(interval, kind, pairs, i, real & within, &near, worker);
+            add_nearest(interval, kind, pairs, i, listed, &near, worker);
         kept = keep_lanes(pairs, i, real & ~within & ~near.apart, kept);
     }
     if (named.count > 0) contact_worker_add_candidates(interval->mesh->context, worker, kind, &named);

@@ -227,8 +227,9 @@ static inline i32x8 sharing_vertex(const pairs_x8 *o) {
 /* Two trees, and the margins that all pairs of their triangles share. */
 typedef struct tree_pair {
     uint32_t a, b;
-    f32x8 between;   /* is added to a record of b */
-    float gap, wide; /* as in pairs_x8 */
+    f32x8 between;         /* is added to a record of b */
+    double size, distance; /* by which the following are rounded and wide */
+    float gap, wide;       /* as in pairs_x8 */
 } tree_pair;
 
 static double tree_distance(const swept_interval *interval, const bvh_tree *p, const bvh_tree *q) {
@@ -239,12 +240,21 @@ static double tree_distance(const swept_interval *interval, const bvh_tree *p, c
     return distance + interval->beyond;
 }
 
+static float gap_within(const swept_interval *interval, const tree_pair *trees, double distance) {
+    const double d = distance * interval->bvh->scale * (1.0 + 0x1p-20);
+    return (float)(trees->size * 0x1p-21 + d) * (1.0f + 0x1p-20f);
+}
+
+static float wide_within(const swept_interval *interval, const tree_pair *trees, double distance) {
+    const double d = distance * interval->bvh->scale * (1.0 + 0x1p-20);
+    return (float)(trees->size * 0x1.8p-19 + 1.7320508076 * d) * (1.0f + 0x1p-20f);
+}
+
 static void relate_parts(const swept_interval *interval, uint32_t a, uint32_t b, tree_pair *out) {
     const bvh *hierarchy = interval->bvh;
     const bvh_tree *p = &hierarchy->trees[a], *q = &hierarchy->trees[b];
-    double distance = tree_distance(interval, p, q);
     float between[LANES] = {0.0f};
-    double size = (double)p->reach + (double)q->reach, d = distance * hierarchy->scale * (1.0 + 0x1p-20);
+    double size = (double)p->reach + (double)q->reach;
     for (int i = 0; i < 6 && a != b; i++) {
         double from = p->origin[i / 3][i % 3] * hierarchy->scale,
                to = q->origin[i / 3][i % 3] * hierarchy->scale;
@@ -255,8 +265,31 @@ static void relate_parts(const swept_interval *interval, uint32_t a, uint32_t b,
     out->a = a;
     out->b = b;
     out->between = f32x8_load(between);
-    out->gap = (float)(size * 0x1p-21 + d) * (1.0f + 0x1p-20f);
-    out->wide = (float)(size * 0x1.8p-19 + 1.7320508076 * d) * (1.0f + 0x1p-20f);
+    out->size = size;
+    out->distance = tree_distance(interval, p, q);
+    out->gap = gap_within(interval, out, out->distance);
+    out->wide = wide_within(interval, out, out->distance);
+}
+
+/* How far the vertices of a triangle may go. */
+static double way_of_slot(const swept_interval *interval, uint32_t slot) {
+    const bvh *hierarchy = interval->bvh;
+    const bvh_leaf *leaf = &hierarchy->leaves[slot / LANES];
+    double way = 0.0;
+    for (int i = 0; i < 3; i++)
+        way = larger_way(way,
+                         interval->motion->ways[hierarchy->record_vertices[leaf->corners[i][slot % LANES]]]);
+    return way;
+}
+
+/* Lowers what two triangles must stay apart by to what their motion may do. */
+static void lower_to_ways(const swept_interval *interval, triangle_pair pair, uint32_t lane,
+                          const tree_pair *trees, pairs_x8 *out) {
+    const double way = way_of_slot(interval, pair.a) + way_of_slot(interval, pair.b),
+                 distance = distance_on_ways(interval->motion, way);
+    if (distance >= trees->distance) return;
+    out->gap[lane] = gap_within(interval, trees, distance);
+    out->wide[lane] = wide_within(interval, trees, distance);
 }
 
 /* The places of the last pair are filled up with itself. */
@@ -279,6 +312,7 @@ static inline void load_pairs(const swept_interval *interval, const triangle_pai
         }
         out->gap[lane] = trees->gap;
         out->wide[lane] = trees->wide;
+        if (interval->motion != NULL) lower_to_ways(interval, pair, lane, trees, out);
     }
     for (int i = 0; i < 6; i++) {
         f32x8_transpose(rows[i]);

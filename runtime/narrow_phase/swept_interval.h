@@ -12,6 +12,17 @@
 
 struct representatives;
 
+/* How vertices may go from where they rest. */
+typedef struct motion_bounds {
+    const double *ways; /* per vertex: how far it goes at the most */
+    double kept;        /* the greatest distance that a pair has to keep */
+    double least;       /* pairs that are within so much of it are found anyway */
+    /* Three per vertex: its motion, which it shortens. A pair that this brings no nearer to what it has to keep than `rounding`,
+     * which exceeds all errors, is counted and not named. NULL: all pairs are named. */
+    const double *motions;
+    double rounding;
+} motion_bounds;
+
 /* All workers read it, and none writes to it. */
 typedef struct swept_interval {
     const cscd_mesh *mesh;
@@ -28,10 +39,8 @@ typedef struct swept_interval {
     bool thick;             /* a pair's distance is that of the rules, where this is the greater one */
     double tolerance;       /* of these distances, as a share of them; 0: the default */
     double activation;      /* above 0, where thick: pairs are found within so much more than that */
-    const double
-        *ways; /* per vertex, how far it may go at the most, where pairs at rest are found only if that may
-                             * bring them within `ways_kept`, or if they are within `ways_least` of it; else NULL */
-    double ways_kept, ways_least;
+    const motion_bounds
+        *motion;        /* pairs at rest are found only where it may bring them together; NULL: all are */
     double beyond;      /* volumes are compared within so much more than the pairs' distances */
     double floor_ratio; /* above 0: pairs that start nearer than they should have a floor instead */
     bool collecting;    /* pairs of features become the workers' candidates instead of being tested */
@@ -96,21 +105,28 @@ static inline double larger_way(double a, double b) {
 /* The ways of the vertices of a triangle, and of an edge. */
 static inline double way_of_triangle(const swept_interval *interval, uint32_t triangle) {
     const uint32_t *v = interval->mesh->triangles[triangle];
-    return larger_way(larger_way(interval->ways[v[0]], interval->ways[v[1]]), interval->ways[v[2]]);
+    const double *ways = interval->motion->ways;
+    return larger_way(larger_way(ways[v[0]], ways[v[1]]), ways[v[2]]);
 }
 
 static inline double way_of_edge(const swept_interval *interval, uint32_t edge) {
     const uint32_t *v = interval->mesh->edges[edge];
-    return larger_way(interval->ways[v[0]], interval->ways[v[1]]);
+    return larger_way(interval->motion->ways[v[0]], interval->motion->ways[v[1]]);
 }
 
-/* Lowers the limit of a pair, VF or EE, to the ways of its sides; see ways. The share more covers the rounding of the sum. */
+/* The distance within which two sides may come together that go so far, or that is looked at anyway. The share more covers the
+ * rounding of the sum. */
+static inline double distance_on_ways(const motion_bounds *motion, double ways) {
+    return (motion->kept + larger_way(ways, motion->least)) * (1.0 + 0x1p-17);
+}
+
+/* Lowers the limit of a pair, VF or EE, to the ways of its sides. */
 static inline separation separation_on_ways(const swept_interval *interval, cscd_contact_kind kind,
                                             uint32_t a, uint32_t b, separation limit) {
-    if (interval->ways == NULL) return limit;
-    const double way = kind == CSCD_CONTACT_VF ? interval->ways[a] + way_of_triangle(interval, b)
+    if (interval->motion == NULL) return limit;
+    const double way = kind == CSCD_CONTACT_VF ? interval->motion->ways[a] + way_of_triangle(interval, b)
                                                : way_of_edge(interval, a) + way_of_edge(interval, b);
-    const double distance = (interval->ways_kept + larger_way(way, interval->ways_least)) * (1.0 + 0x1p-17);
+    const double distance = distance_on_ways(interval->motion, way);
     return distance < limit.distance ? proximity_limit(distance) : limit;
 }
 

@@ -231,8 +231,10 @@ typedef struct truncation_work {
     const uint32_t *names; /* of seams, whose vertices go alike; NULL: there are none */
     const wanted_motion *motion;
     division_planes planes;
-    double farthest; /* that a vertex may go, so that pairs that are not near stay apart */
-    double *ways;    /* per vertex: so far, or as far as it wants, whichever is less */
+    double farthest;    /* that a vertex may go, so that pairs that are not near stay apart */
+    double *ways;       /* per vertex: so far, or as far as it wants, whichever is less */
+    double *motions;    /* per vertex: what it wants, no longer than that */
+    double *of_objects; /* per object: the greatest of its ways */
     double *end;
     double *shares; /* per vertex: of its motion, up to the first plane; at last what it goes */
     size_t *tries;  /* per vertex: how many of them did not fit */
@@ -431,13 +433,16 @@ static void carry_states_over(cscd_detector *d, const double *end) {
 /* ---- one truncation ----------------------------------------------------------------------------------- */
 
 static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t **first) {
-    size_t count = d->mesh->vertex_count;
+    const size_t count = d->mesh->vertex_count, objects = d->mesh->object_count;
     if (d->vertex_scratch == NULL)
-        d->vertex_scratch = context_allocate(d->context, count, 2 * sizeof(size_t) + 2 * sizeof(double));
+        d->vertex_scratch =
+            context_allocate(d->context, count + objects, 2 * sizeof(size_t) + 5 * sizeof(double));
     if (d->vertex_scratch == NULL) return CSCD_OUT_OF_MEMORY;
     w->shares = d->vertex_scratch;
     w->ways = w->shares + count;
-    w->tries = (void *)(w->ways + count);
+    w->motions = w->ways + count;
+    w->of_objects = w->motions + 3 * count;
+    w->tries = (void *)(w->of_objects + objects);
     *first = w->tries + count;
     return CSCD_OK;
 }
@@ -447,28 +452,60 @@ static cscd_status reserve_planes(cscd_detector *d, size_t count, division_plane
     return out->planes != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
-/* The end that a vertex wants, as it is stored, is within its way with the rounding that keeps_sides adds. */
-static void measure_ways(truncation_work *w) {
+/* The motion of a vertex is what division_planes_find divides by. The end that it wants, as it is stored, is within its way with the
+ * rounding that keeps_sides adds. */
+static void measure_way(truncation_work *w, size_t v, cscd_scalar scalar) {
+    const double *x0 = w->motion->x0 + 3 * v, *x1 = w->motion->x1 + 3 * v;
+    double *motion = w->motions + 3 * v, wanted[3];
+    vec3_subtract(x1, x0, motion);
+    const double length = sqrt(vec3_dot(motion, motion));
+    for (int k = 0; k < 3; k++) {
+        if (length > w->farthest) motion[k] *= w->farthest / length;
+        wanted[k] = stored_coordinate(x1[k], scalar) - x0[k];
+    }
+    w->ways[v] = min_of(sqrt(vec3_dot(wanted, wanted)) * (1.0 + 0x1p-40), w->farthest);
+}
+
+/* Returns the largest coordinate. */
+static double measure_ways(truncation_work *w) {
+    double largest = 0.0;
     for (uint32_t i = 0; i < w->mesh->object_count; i++) {
         const cscd_object *of = &w->mesh->objects[i];
         cscd_scalar scalar = w->motion->scalars != NULL ? w->motion->scalars[i] : CSCD_SCALAR_DOUBLE;
+        w->of_objects[i] = 0.0;
         for (size_t v = of->first_vertex; v < (size_t)of->first_vertex + of->vertex_count; v++) {
-            double wanted[3];
-            for (size_t k = 0; k < 3; k++)
-                wanted[k] = stored_coordinate(w->motion->x1[3 * v + k], scalar) - w->motion->x0[3 * v + k];
-            w->ways[v] = min_of(sqrt(vec3_dot(wanted, wanted)) * (1.0 + 0x1p-40), w->farthest);
+            measure_way(w, v, scalar);
+            w->of_objects[i] = max_of(w->of_objects[i], w->ways[v]);
+            largest = max_of(
+                largest, max_of(vec3_largest(w->motion->x0 + 3 * v), vec3_largest(w->motion->x1 + 3 * v)));
         }
     }
+    return largest;
 }
 
+/* More than rounding adds to the way of a vertex along any direction, as a share of the largest coordinate: of doubles, and of
+ * positions that may be stored as floats. */
+static const double rounding_of_doubles = 0x1p-36, rounding_of_floats = 0x1p-20;
+
 /* Lists, in the detector's memory, the pairs that need a plane: others stay apart while vertices keep to their ways
- * (docs/theory/displacement-bounds.md, lemma 1). Points that have no distance to keep from each other need none. */
+ * (docs/theory/displacement-bounds.md, lemma 1), or have a plane that stops neither side. *near_count says how many there are with
+ * the latter. Points that have no distance to keep from each other need none. */
 static cscd_status find_pairs_to_divide(cscd_detector *d, truncation_work *w, double search_radius,
-                                        cscd_proximities *out) {
-    measure_ways(w);
-    if (d->mesh->loose.point_count > 0) return find_near_pairs(d, w->motion->x0, search_radius, out);
-    const near_ways ways = {w->ways, search_distance(d, search_radius)};
-    return proximity_find_on_ways(d, w->motion->x0, &ways, out);
+                                        cscd_proximities *out, size_t *near_count) {
+    const double largest = measure_ways(w);
+    size_t parted = 0;
+    cscd_status status;
+    if (d->mesh->loose.point_count > 0) {
+        status = find_near_pairs(d, w->motion->x0, search_radius, out);
+    } else {
+        const double share = w->motion->scalars != NULL ? rounding_of_floats : rounding_of_doubles;
+        near_ways ways = {{w->ways, .motions = w->motions, .rounding = share * largest},
+                          w->of_objects,
+                          search_distance(d, search_radius)};
+        status = proximity_find_on_ways(d, w->motion->x0, &ways, &parted, out);
+    }
+    *near_count = out->count + parted;
+    return status;
 }
 
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
@@ -477,10 +514,11 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
                             .end = end};
     size_t *first;
     bool known = config_culls(&d->config) && start_states_hold(&d->known.starts, motion->x0);
-    cscd_proximities near;
+    cscd_proximities near = {.count = 0};
+    size_t near_count;
     cscd_status status = reserve_vertices(d, &work, &first);
-    if (status == CSCD_OK) status = find_pairs_to_divide(d, &work, search_radius, &near);
-    if (status == CSCD_LIST_TOO_LONG) *out = (cscd_truncation){.near_count = near.count};
+    if (status == CSCD_OK) status = find_pairs_to_divide(d, &work, search_radius, &near, &near_count);
+    if (status == CSCD_LIST_TOO_LONG) *out = (cscd_truncation){.near_count = near_count};
     if (status == CSCD_OK) status = reserve_planes(d, near.count, &work.planes);
     if (status != CSCD_OK) return status;
     const near_rules rules = {d->mesh, &d->config};
@@ -490,7 +528,7 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     truncate_all(&work, d->context->threads);
     status = context_progress_status(d->context); /* before anything is known of the end */
     if (status != CSCD_OK) return status;
-    *out = (cscd_truncation){.held = d->results.proximities.items, .near_count = near.count};
+    *out = (cscd_truncation){.held = d->results.proximities.items, .near_count = near_count};
     sum_up_vertices(&work, out);
     out->held_count = keep_held(d, motion->x0, &work.planes);
     if (known) carry_states_over(d, end);

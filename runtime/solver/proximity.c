@@ -180,13 +180,30 @@ cscd_status proximity_find(cscd_detector *d, const double *positions, double dis
 /* Pairs that nearly touch are found also where nothing moves, for the caller is told of them. */
 static const double nearly_touching = 0x1p-10;
 
-cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, const near_ways *ways,
+/* Volumes of two objects are compared within the mean of their growths, which covers both ways. */
+static volume_growth growth_on_ways(const cscd_detector *d, const near_ways *ways) {
+    const motion_bounds *motion = &ways->bounds;
+    for (uint32_t i = 0; i < d->mesh->object_count; i++)
+        ways->of_objects[i] = distance_on_ways(motion, 2.0 * ways->of_objects[i]) * (1.0 + 0x1p-40);
+    return (volume_growth){distance_on_ways(motion, 0.0), ways->of_objects, 0.0};
+}
+
+static size_t count_parted(const search_space *s) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < s->traversal.worker_count; i++) count += (size_t)s->workers[i].parted;
+    return count;
+}
+
+cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, near_ways *ways, size_t *parted,
                                    cscd_proximities *out) {
     interval_search search = proximity_search(d, positions, ways->farthest, CSCD_NEAR_PAIRS);
-    search.interval.ways = ways->ways;
-    search.interval.ways_kept = config_greatest_separation(&d->config);
-    search.interval.ways_least = nearly_touching * (ways->farthest - search.interval.ways_kept);
-    cscd_status status = search_moment(d, &search, uniform_growth(ways->farthest));
+    ways->bounds.kept = config_greatest_separation(&d->config);
+    ways->bounds.least = nearly_touching * (ways->farthest - ways->bounds.kept);
+    /* callers who leave pairs out are asked about each pair that is near */
+    if (exclusions_any(&d->config.exclusions)) ways->bounds.motions = NULL;
+    search.interval.motion = &ways->bounds;
+    cscd_status status = search_moment(d, &search, growth_on_ways(d, ways));
+    *parted = count_parted(&d->space);
     return status == CSCD_OK ? collect_items(d, positions, CSCD_NEAR_PAIRS, true, out) : status;
 }
 

@@ -24,15 +24,17 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
 cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_near_form form,
                            cscd_proximities *out);
 
-/* The pairs that a motion may bring together. */
+/* The motion that may bring pairs together, and per object how far any of its vertices goes. */
 typedef struct near_ways {
-    const double *ways; /* per vertex: how far it goes at the most */
+    motion_bounds bounds;
+    double *of_objects; /* becomes how far its volumes are widened */
     double farthest;    /* of all pairs */
 } near_ways;
 
-/* Finds all pairs that may come within what they keep while vertices go no farther than their ways, and lists them so, with
- * kind, a, b, vertices, weights, normal and separation alone: proximity_complete writes all of one item. */
-cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, const near_ways *ways,
+/* Finds all pairs that may come within what they keep while vertices keep to the bounds of their motion, and lists them so, with
+ * kind, a, b, vertices, weights, normal and separation alone: proximity_complete writes all of one item. *parted says how many
+ * more would be listed without the motions of the bounds, of which the caller needs to know no more. */
+cscd_status proximity_find_on_ways(cscd_detector *d, const double *positions, near_ways *ways, size_t *parted,
                                    cscd_proximities *out);
 void proximity_complete(cscd_detector *d, const double *positions, size_t item, cscd_proximity *out);
 

@@ -137,6 +137,41 @@ TEST(pairs_left_out_leave_nothing_known) {
     rig_destroy(&r);
 }
 
+static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    return user != NULL && kind == CSCD_CONTACT_VF && a == b;
+}
+
+/* A detector that may leave pairs out makes a plane for each pair that is near; another one does not where a plane would stop
+ * neither side. */
+TEST(planes_that_stop_nobody_change_nothing) {
+    static double ends[SCENE_VERTICES_MAX * 3];
+    size_t shortened = 0, near = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (int n = 0; n < 4; n++) {
+            const cscd_scalar scalar = n % 2 == 0 ? CSCD_SCALAR_DOUBLE : CSCD_SCALAR_FLOAT;
+            cscd_detector_options options = cscd_detector_defaults();
+            options.min_separation = n < 2 ? 0.0 : 0.02;
+            scene_make((scene_family)family, (uint64_t)n, &interval);
+            rig all = rig_create(&interval, 1, &options);
+            cscd_truncation few = truncate_scene(&all, &interval, 0.2, scalar, end);
+            memcpy(ends, end, sizeof end);
+            rig_destroy(&all);
+            options.ignore = ignore_none;
+            all = rig_create(&interval, 1, &options);
+            cscd_truncation many = truncate_scene(&all, &interval, 0.2, scalar, end);
+            assert_memory_equal(ends, end, sizeof end);
+            assert_int_equal(few.near_count, many.near_count);
+            assert_int_equal(few.held_count, many.held_count);
+            assert_int_equal(few.shortened, many.shortened);
+            shortened += many.shortened;
+            near += many.near_count;
+            rig_destroy(&all);
+        }
+    }
+    print_message("  %zu vertices shortened by %zu pairs\n", shortened, near);
+    assert_true(shortened > 100 && near > 1000);
+}
+
 TEST(truncation_is_the_same_for_all_threads_and_methods) {
     static double first[SCENE_VERTICES_MAX * 3];
     for (uint64_t seed = 0; seed < 4; seed++) {
