@@ -10,8 +10,8 @@ void contact_worker_reset(contact_worker *worker) {
     worker->cursor = 0;
     worker->feature_pairs = 0;
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) worker->decided[i] = 0;
-    worker->separations = 0;
     worker->parted = 0;
+    worker->separations = 0;
     worker->out_of_memory = false;
     for (int kind = 0; kind < 2; kind++) worker->queue[kind].count = 0;
     for (int kind = 0; kind < 2; kind++) worker->candidates[kind].count = 0;
