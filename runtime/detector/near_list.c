@@ -9,9 +9,9 @@
 
 /* ---- names --------------------------------------------------------------------------------------------- */
 
-/* The bits that numbers of triangles and edges have. */
+/* The bits that numbers of features have. */
 static int bits_of_features(const cscd_mesh *mesh) {
-    uint64_t largest = mesh->edge_count | mesh->triangle_count;
+    uint64_t largest = mesh->vertex_count | mesh->edge_count | mesh->triangle_count;
     int bits = 0;
     for (; largest > 0; largest >>= 1) bits++;
     return bits;
@@ -148,10 +148,50 @@ static void sort_known(near_list *list) {
     sort_by_number(keys, list->known.spare_keys, list->known_count, sizeof *keys);
 }
 
+/* Moves names to their places by the number that they have at `shift`; each of these has its first place. */
+static void place_names(const uint64_t *from, uint64_t *to, size_t count, int shift, uint64_t mask,
+                        uint64_t *places) {
+    for (size_t i = 0; i < count; i++) to[places[from[i] >> shift & mask]++] = from[i];
+}
+
+/* Turns how often numbers occur into the first place of each. */
+static void begin_places(uint64_t *places, size_t numbers) {
+    uint64_t place = 0;
+    for (size_t i = 0; i < numbers; i++) {
+        const uint64_t next = place + places[i];
+        places[i] = place;
+        place = next;
+    }
+}
+
+/* Sorts by b and then by a. Pairs that are found one after the other are close to each other in the mesh, so both leave most of the
+ * places in the cache. spare has room for the names and as many places. */
+static void sort_by_features(uint64_t *names, uint64_t *spare, size_t count, int bits) {
+    const size_t numbers = (size_t)1 << bits;
+    const uint64_t mask = numbers - 1;
+    uint64_t *of_a = spare + count, *of_b = of_a + numbers;
+    memset(of_a, 0, 2 * numbers * sizeof *of_a);
+    for (size_t i = 0; i < count; i++) {
+        of_a[names[i] >> bits]++;
+        of_b[names[i] & mask]++;
+    }
+    begin_places(of_a, numbers);
+    begin_places(of_b, numbers);
+    place_names(names, spare, count, 0, mask, of_b);
+    place_names(spare, names, count, bits, mask, of_a);
+}
+
+static void sort_names(uint64_t *names, uint64_t *spare, size_t count, int bits) {
+    if (bits < 32 && count >> bits >= 2)
+        sort_by_features(names, spare, count, bits);
+    else if (count > 0)
+        sort_by_number(names, spare, count, sizeof *names);
+}
+
 void near_list_sort(near_list *list, uint64_t *spare) {
     const size_t vf = list->of_kind[CSCD_CONTACT_VF], ee = list->of_kind[CSCD_CONTACT_EE];
-    if (vf > 0) sort_by_number(list->names, spare, vf, sizeof *spare);
-    if (ee > 0) sort_by_number(list->names + vf, spare, ee, sizeof *spare);
+    sort_names(list->names, spare, vf, list->bits);
+    sort_names(list->names + vf, spare, ee, list->bits);
     if (list->known_count > 0) sort_known(list);
 }
 

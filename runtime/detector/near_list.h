@@ -20,7 +20,7 @@ typedef struct near_list {
  * out->count pairs, and there is a cap below that. */
 cscd_status near_list_gather(search_space *s, const exclusions *e, near_list *out);
 
-/* Puts them in order; spare has room for `count` numbers. */
+/* Puts them in order; spare has room for twice as many numbers as there are pairs. */
 void near_list_sort(near_list *list, uint64_t *spare);
 
 void near_list_free(cscd_context *context, near_list *list);

@@ -132,10 +132,18 @@ static inline range join_ranges(range a, range b) {
     return (range){f32x8_min(a.low, b.low), f32x8_max(a.high, b.high)};
 }
 
-/* The distance by which a and b stay apart on the same side at both ends; negative where they do not. */
-static inline f32x8 gap_between(range a0, range b0, range a1, range b1) {
-    f32x8 before = f32x8_min(b0.low - a0.high, b1.low - a1.high);
-    f32x8 behind = f32x8_min(a0.low - b0.high, a1.low - b1.high);
+/* Two features along one direction, at both ends or, the same, at the only moment there is. */
+typedef struct range_pair {
+    range a[2], b[2];
+} range_pair;
+
+/* The distance by which a and b stay apart on the same side at all ends; negative where they do not. */
+static inline f32x8 gap_between(const range_pair *p, int ends) {
+    f32x8 before = p->b[0].low - p->a[0].high, behind = p->a[0].low - p->b[0].high;
+    if (ends == 2) {
+        before = f32x8_min(before, p->b[1].low - p->a[1].high);
+        behind = f32x8_min(behind, p->a[1].low - p->b[1].high);
+    }
     return f32x8_max(before, behind);
 }
 
@@ -154,20 +162,26 @@ static inline void ranges_of(const f32x8 points[6], ranges *out) {
 }
 
 /* Widens each gap to that along one more direction, where this is larger. */
-static inline void widen_gaps(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
+static inline void widen_gaps(const coordinates at, int ends, f32x8 gaps[FEATURE_COUNT]) {
     ranges r[2];
-    for (int e = 0; e < 2; e++) ranges_of(at[e], &r[e]);
+    for (int e = 0; e < ends; e++) ranges_of(at[e], &r[e]);
     for (int t = 0; t < 2; t++) {
         for (int i = 0; i < 3; i++) {
-            f32x8 gap =
-                gap_between(r[0].vertices[t][i], r[0].faces[1 - t], r[1].vertices[t][i], r[1].faces[1 - t]);
-            gaps[3 * t + i] = f32x8_max(gaps[3 * t + i], gap);
+            range_pair pair;
+            for (int e = 0; e < ends; e++) {
+                pair.a[e] = r[e].vertices[t][i];
+                pair.b[e] = r[e].faces[1 - t];
+            }
+            gaps[3 * t + i] = f32x8_max(gaps[3 * t + i], gap_between(&pair, ends));
         }
     }
     for (int i = 0; i < 9; i++) {
-        f32x8 gap = gap_between(r[0].edges[0][i / 3], r[0].edges[1][i % 3], r[1].edges[0][i / 3],
-                                r[1].edges[1][i % 3]);
-        gaps[FEATURE_EDGES + i] = f32x8_max(gaps[FEATURE_EDGES + i], gap);
+        range_pair pair;
+        for (int e = 0; e < ends; e++) {
+            pair.a[e] = r[e].edges[0][i / 3];
+            pair.b[e] = r[e].edges[1][i % 3];
+        }
+        gaps[FEATURE_EDGES + i] = f32x8_max(gaps[FEATURE_EDGES + i], gap_between(&pair, ends));
     }
 }
 
@@ -177,13 +191,13 @@ static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x
     return features;
 }
 
-static inline i32x8 near_along_axes(const pairs_x8 *o, i32x8 features) {
+static inline i32x8 near_along_axes(const pairs_x8 *o, int ends, i32x8 features) {
     f32x8 gaps[FEATURE_COUNT];
     for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
     for (int k = 0; k < 3; k++) {
         coordinates at;
-        for (int i = 0; i < 12; i++) at[i / 6][i % 6] = o->points[i % 6][i / 6 * 4 + k];
-        widen_gaps((const f32x8(*)[6])at, gaps);
+        for (int i = 0; i < 6 * ends; i++) at[i / 6][i % 6] = o->points[i % 6][i / 6 * 4 + k];
+        widen_gaps((const f32x8(*)[6])at, ends, gaps);
     }
     return keep_near(gaps, f32x8_load(o->gap), features);
 }
@@ -196,13 +210,13 @@ static inline f32x8 along_diagonal(const f32x8 p[3], int k) {
                     : p[1] - p[0] + p[2];
 }
 
-static inline i32x8 near_along_diagonals(const pairs_x8 *o, i32x8 features) {
+static inline i32x8 near_along_diagonals(const pairs_x8 *o, int ends, i32x8 features) {
     f32x8 gaps[FEATURE_COUNT];
     for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
     for (int k = 0; k < KDOP_AXES - BOX_AXES; k++) {
         coordinates at;
-        for (int i = 0; i < 12; i++) at[i / 6][i % 6] = along_diagonal(&o->points[i % 6][i / 6 * 4], k);
-        widen_gaps((const f32x8(*)[6])at, gaps);
+        for (int i = 0; i < 6 * ends; i++) at[i / 6][i % 6] = along_diagonal(&o->points[i % 6][i / 6 * 4], k);
+        widen_gaps((const f32x8(*)[6])at, ends, gaps);
     }
     return keep_near(gaps, f32x8_load(o->wide), features);
 }
@@ -331,8 +345,8 @@ static inline bool any_feature(i32x8 features) {
     return i32x8_negative(-features) != 0;
 }
 
-static void SIMD_NAME(feature_filter)(const swept_interval *interval, const triangle_pair *pairs,
-                                      uint32_t count, bool apart, uint16_t *features) {
+static inline void filter_pairs(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                                bool apart, int ends, uint16_t *features) {
     tree_pair trees = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
@@ -340,10 +354,19 @@ static void SIMD_NAME(feature_filter)(const swept_interval *interval, const tria
         load_pairs(interval, pairs + p, lanes, &trees, &o);
         i32x8 kept = load_features(features + p, lanes);
         if (!apart) kept &= ~sharing_vertex(&o);
-        kept = near_along_axes(&o, kept);
-        if (any_feature(kept)) kept = near_along_diagonals(&o, kept);
+        kept = near_along_axes(&o, ends, kept);
+        if (any_feature(kept)) kept = near_along_diagonals(&o, ends, kept);
         for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];
     }
+}
+
+/* Both ends are one moment where their positions are the same array. */
+static void SIMD_NAME(feature_filter)(const swept_interval *interval, const triangle_pair *pairs,
+                                      uint32_t count, bool apart, uint16_t *features) {
+    if (interval->x0 == interval->x1)
+        filter_pairs(interval, pairs, count, apart, 1, features);
+    else
+        filter_pairs(interval, pairs, count, apart, 2, features);
 }
 
 /* ---- the table ---------------------------------------------------------------------------------------- */

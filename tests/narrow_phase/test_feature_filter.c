@@ -108,7 +108,8 @@ static void feature_filter_in_runs(const bvh *hierarchy, double distance, uint16
         uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
         uint16_t some[32];
         for (uint32_t k = 0; k < 32; k++) some[k] = k < count ? FEATURE_ALL : UNWRITTEN;
-        swept_interval interval = {.bvh = hierarchy, .limit = {distance, 0.0}};
+        swept_interval interval = {
+            .x0 = shape.x0, .x1 = shape.x1, .bvh = hierarchy, .limit = {distance, 0.0}};
         narrow_phase_kernels_of(hierarchy->mesh->context)
             ->feature_filter(&interval, pairs + i, count, false, some);
         for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
@@ -175,7 +176,7 @@ TEST(keeps_what_just_touches) {
             const uint32_t *slots = levels[0].bvh.slots;
             pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
         }
-        swept_interval interval = {.bvh = &levels[0].bvh};
+        swept_interval interval = {.x0 = shape.x0, .x1 = shape.x1, .bvh = &levels[0].bvh};
         for (uint32_t p = 0; p < count; p++) features[0][p] = FEATURE_ALL;
         narrow_phase_kernels_of(levels[0].bvh.mesh->context)
             ->feature_filter(&interval, pairs, count, false, features[0]);

@@ -131,6 +131,7 @@ TEST(pairs_left_out_leave_nothing_known) {
     expect_ok(step_packed(r.detector, interval.x0, interval.x0, &found));
     cscd_truncation out = truncate_scene(&r, &interval, 4.0, CSCD_SCALAR_DOUBLE, end);
     assert_int_equal(out.shortened, 0);
+    assert_int_equal(out.near_count, 0);
     memcpy(interval.x0, end, sizeof end);
     expect_ok(step_packed(r.detector, interval.x0, interval.x0, &found));
     assert_true(cscd_detector_counters(r.detector).static_checks > 0);
