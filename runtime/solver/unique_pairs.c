@@ -18,7 +18,7 @@
 enum { PAIRS_PER_SHARE = 4096 };
 
 /* A pair of the list by the parts that its nearest points lie on, which are all the same in a group. `parts` is a, and b in the low
- * half: VV: a < b; EV: the edge a and the vertex b. */
+ * bits, as many as the list has for b: VV: a < b; EV: the edge a and the vertex b. */
 typedef struct part_name {
     uint64_t parts;
     uint64_t pair; /* its place in the list, and in the highest three bits what kind the parts are */
@@ -49,41 +49,41 @@ static const double *position_of(const proximity_scene *scene, uint32_t vertex) 
 
 /* ---- names --------------------------------------------------------------------------------------------- */
 
-static void set_name(cscd_contact_kind kind, uint32_t a, uint32_t b, part_name *name) {
+static void set_name(int bits, cscd_contact_kind kind, uint32_t a, uint32_t b, part_name *name) {
     name->pair = (uint64_t)kind << KIND_SHIFT | pair_of(name);
-    name->parts = (uint64_t)a << 32 | b;
+    name->parts = (uint64_t)a << bits | b;
 }
 
-static void name_vertices(uint32_t v, uint32_t w, part_name *name) {
-    set_name(CSCD_CONTACT_VV, v < w ? v : w, v < w ? w : v, name);
+static void name_vertices(int bits, uint32_t v, uint32_t w, part_name *name) {
+    set_name(bits, CSCD_CONTACT_VV, v < w ? v : w, v < w ? w : v, name);
 }
 
 /* The nearest point lies on the corners that weigh more than 0: on one, on two and so on their edge, or inside. */
-static void name_vf(const cscd_mesh *mesh, const near_eight *p, uint32_t at, part_name *name) {
+static void name_vf(const cscd_mesh *mesh, int bits, const near_eight *p, uint32_t at, part_name *name) {
     const uint32_t vertex = p->a[at], face = p->b[at];
     const double u = p->at.u[at], v = p->at.v[at];
     bool on[3] = {u + v<1.0, u> 0.0, v > 0.0};
     int corners = on[0] + on[1] + on[2];
     for (int i = 0; i < 3; i++) {
-        if (corners == 1 && on[i]) name_vertices(vertex, mesh->triangles[face][i], name);
+        if (corners == 1 && on[i]) name_vertices(bits, vertex, mesh->triangles[face][i], name);
         if (corners == 2 && !on[i])
-            set_name(CSCD_CONTACT_EV, mesh->triangle_edges[face][(i + 1) % 3], vertex, name);
+            set_name(bits, CSCD_CONTACT_EV, mesh->triangle_edges[face][(i + 1) % 3], vertex, name);
     }
 }
 
-static void name_ee(const cscd_mesh *mesh, const near_eight *p, uint32_t at, part_name *name) {
+static void name_ee(const cscd_mesh *mesh, int bits, const near_eight *p, uint32_t at, part_name *name) {
     const double u = p->at.u[at], v = p->at.v[at];
     bool end_a = u == 0.0 || u == 1.0, end_b = v == 0.0 || v == 1.0;
     uint32_t vertex_a = mesh->edges[p->a[at]][u == 1.0], vertex_b = mesh->edges[p->b[at]][v == 1.0];
-    if (end_a && end_b) name_vertices(vertex_a, vertex_b, name);
-    if (end_a && !end_b) set_name(CSCD_CONTACT_EV, p->b[at], vertex_a, name);
-    if (end_b && !end_a) set_name(CSCD_CONTACT_EV, p->a[at], vertex_b, name);
+    if (end_a && end_b) name_vertices(bits, vertex_a, vertex_b, name);
+    if (end_a && !end_b) set_name(bits, CSCD_CONTACT_EV, p->b[at], vertex_a, name);
+    if (end_b && !end_a) set_name(bits, CSCD_CONTACT_EV, p->a[at], vertex_b, name);
 }
 
 /* A point and a wire. Where the point is nearest to an end it may be so to other wires there. */
-static void name_ev(const cscd_mesh *mesh, const near_eight *p, uint32_t at, part_name *name) {
+static void name_ev(const cscd_mesh *mesh, int bits, const near_eight *p, uint32_t at, part_name *name) {
     const double u = p->at.u[at];
-    if (u == 0.0 || u == 1.0) name_vertices(mesh->edges[p->a[at]][u == 1.0], p->b[at], name);
+    if (u == 0.0 || u == 1.0) name_vertices(bits, mesh->edges[p->a[at]][u == 1.0], p->b[at], name);
 }
 
 /* The squared length of the cross product of the edges' vectors. */
@@ -105,10 +105,12 @@ static bool edges_mollified(const proximity_scene *scene, uint32_t a, uint32_t b
 
 static void name_pair(const proximity_scene *scene, const near_eight *p, uint32_t i, part_name *name) {
     const cscd_mesh *mesh = scene->place.mesh;
-    set_name(p->kind, p->a[i], p->b[i], name);
-    if (p->kind == CSCD_CONTACT_VF) name_vf(mesh, p, i, name);
-    if (p->kind == CSCD_CONTACT_EE && !edges_mollified(scene, p->a[i], p->b[i])) name_ee(mesh, p, i, name);
-    if (p->kind == CSCD_CONTACT_EV) name_ev(mesh, p, i, name);
+    const int bits = scene->place.list->bits;
+    set_name(bits, p->kind, p->a[i], p->b[i], name);
+    if (p->kind == CSCD_CONTACT_VF) name_vf(mesh, bits, p, i, name);
+    if (p->kind == CSCD_CONTACT_EE && !edges_mollified(scene, p->a[i], p->b[i]))
+        name_ee(mesh, bits, p, i, name);
+    if (p->kind == CSCD_CONTACT_EV) name_ev(mesh, bits, p, i, name);
 }
 
 static void name_share(void *data, uint32_t index) {
@@ -172,10 +174,11 @@ static double nearest_on_edge(const proximity_scene *scene, uint32_t edge, uint3
 static void describe_parts(const proximity_scene *scene, const part_name *name, near_eight *out) {
     const double *x[4];
     double apart[3];
+    const int bits = scene->place.list->bits;
     *out = (near_eight){.kind = (cscd_contact_kind)kind_of(name),
                         .count = 1,
-                        .a = {(uint32_t)(name->parts >> 32)},
-                        .b = {(uint32_t)name->parts}};
+                        .a = {(uint32_t)(name->parts >> bits)},
+                        .b = {(uint32_t)(name->parts & ((UINT64_C(1) << bits) - 1))}};
     if (out->kind == CSCD_CONTACT_EV) out->at.u[0] = nearest_on_edge(scene, out->a[0], out->b[0]);
     const cscd_stencil s =
         mesh_stencil(scene->place.mesh, out->kind, out->a[0], out->b[0], out->at.u[0], 0.0);
