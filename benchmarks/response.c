@@ -230,7 +230,7 @@ static void close_trial(response_trial *t) {
 
 /* The shares of vertices by what they needed. */
 static void report_responses(const driver_tally *sum, json *out) {
-    static const char *const names[CSCD_RESPONSE_COUNT] = {"free", "stopped", "zone", "truncated", "held"};
+    static const char *const names[CSCD_RESPONSE_COUNT] = {"free", "stopped", "truncated", "held"};
     for (int i = 0; i < CSCD_RESPONSE_COUNT; i++) json_number(out, names[i], sum->response[i] / FRAMES);
     json_number(out, "pushed", (double)sum->pushed / FRAMES);
     json_number(out, "rounds", (double)sum->rounds / FRAMES);

@@ -58,13 +58,11 @@ static bool close_outputs(cloth_files *out, io_error *error) {
 
 /* Prints the part of the summary that the response alone has. */
 static void print_response(const cloth_statistics *t) {
-    printf(
-        "  %llu of %u motions were changed, by %.0f contacts each; %.2f %% of vertices were stopped, %.2f %% in zones, "
-        "%.2f %% truncated\n",
-        (unsigned long long)t->cut, t->frames, t->cut > 0 ? (double)t->pushed / (double)t->cut : 0.0,
-        100.0 * t->shares[CSCD_RESPONSE_STOPPED] / t->frames,
-        100.0 * t->shares[CSCD_RESPONSE_ZONE] / t->frames,
-        100.0 * t->shares[CSCD_RESPONSE_TRUNCATED] / t->frames);
+    printf("  %llu of %u motions were changed, by %.0f contacts each; %.2f %% of vertices were stopped, "
+           "%.2f %% truncated\n",
+           (unsigned long long)t->cut, t->frames, t->cut > 0 ? (double)t->pushed / (double)t->cut : 0.0,
+           100.0 * t->shares[CSCD_RESPONSE_STOPPED] / t->frames,
+           100.0 * t->shares[CSCD_RESPONSE_TRUNCATED] / t->frames);
 }
 
 static void print_summary(const cloth_simulation *c, uint64_t late_allocations) {

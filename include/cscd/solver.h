@@ -250,7 +250,6 @@ CSCD_API cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_
 typedef enum cscd_response {
     CSCD_RESPONSE_FREE,      /* none: it went where it wanted */
     CSCD_RESPONSE_STOPPED,   /* contacts took away what approaches, and friction some of what slides */
-    CSCD_RESPONSE_ZONE,      /* it moved with an impact zone */
     CSCD_RESPONSE_TRUNCATED, /* planes shortened its motion */
     CSCD_RESPONSE_HELD,      /* it stayed, because it touches something at x0 */
     CSCD_RESPONSE_COUNT,
@@ -282,7 +281,8 @@ typedef struct cscd_safe_motion {
     const uint8_t *responses;                      /* one cscd_response per vertex */
     uint32_t response_counts[CSCD_RESPONSE_COUNT]; /* the numbers of vertices */
     uint32_t rounds;                               /* searches: 1 if x1 was safe */
-    size_t pushed;                                 /* contacts on which an impulse acts */
+    uint32_t truncations;                          /* those after which planes shortened motions */
+    size_t pushed;                                 /* pairs of points on which an impulse acts */
     /* The share of its motion that a vertex made, along it, from 0 to 1: the mean, and the least. Those of
      * obstacles, and those that did not want to move, do not count. */
     double mean_share, least_share;
@@ -296,14 +296,13 @@ typedef struct cscd_safe_motion {
 
 /* Finds a motion near the one from x0 to x1 that is certified free of contact and goes on moving, and writes
  * its end to `reached`, which may be x1 or x0 itself, or NULL. A contact stops the approach of its points by
- * impulses, which keep momentum, and Coulomb friction slows what slides. What this leaves after some rounds
- * moves together in impact zones (Harmon et al. 2008), and planes truncate the rest, as in
- * cscd_detector_truncate. Obstacles go where they want unless something is caught between them, and then stop
- * as a whole. The vertices of a seam are shifted by the same.
+ * impulses, which keep momentum, and Coulomb friction slows what slides. The features of pairs that then come
+ * into contact elsewhere stop before a plane between them. What this leaves after some rounds is shortened to
+ * such planes, as in cscd_detector_truncate. Obstacles go where they want unless something is caught between
+ * them, and then stop as a whole. The vertices of a seam are shifted by the same.
  *
  * The certificate is for the positions as stored: nothing touches on the motion but what is `held`. As in
- * cscd_detector_max_step no pair sinks below its floor; where planes truncate, one that starts nearer than
- * min_separation keeps 0.985 of its distance (docs/solver/guarantees.md). A velocity follows from
+ * cscd_detector_max_step no pair sinks below its floor (docs/solver/guarantees.md). A velocity follows from
  * reached - x0. The result is the same for any number of threads. Timings and counters are those of the
  * whole call. options: NULL for the defaults. INVALID_ARGUMENT also for the methods PUBLISHED and
  * ICCD_PUBLISHED, where no vertex can move, and for doubles in x0 with floats in `reached`. CANCELLED: see

@@ -304,8 +304,8 @@ class Detector(LiveSettings):
                   out: Optional[Array] = None) -> Tuple[Array, SafeMotion]:
         """Finds a motion near the one from ``x0`` to ``x1`` that is certified free of contact and goes on moving.
 
-        Contacts stop what approaches, by impulses that keep momentum, with Coulomb friction; impact zones and planes take
-        what this leaves (include/cscd/solver.h). Returns the positions, and what it took.
+        Contacts stop what approaches, by impulses that keep momentum, with Coulomb friction; planes shorten the motions
+        of what this leaves (include/cscd/solver.h). Returns the positions, and what it took.
 
         Parameters
         ----------

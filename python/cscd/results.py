@@ -71,7 +71,7 @@ class Contacts(Records):
 
 
 #: What kept the motion of a vertex safe, by the codes of ``SafeMotion.responses``.
-RESPONSES = ("free", "stopped", "zone", "truncated", "held")
+RESPONSES = ("free", "stopped", "truncated", "held")
 
 
 class SafeMotion(NamedTuple):
@@ -85,8 +85,10 @@ class SafeMotion(NamedTuple):
         The share of its motion that a vertex made, along it, from 0 to 1.
     obstacle_share : float
         The least by which an obstacle, as a whole, went; mostly 1.
-    rounds, pushed : int
-        How many searches it took (1 if ``x1`` was safe), and on how many contacts an impulse acts.
+    rounds, truncations : int
+        How many searches it took (1 if ``x1`` was safe), and after how many of them planes shortened motions.
+    pushed : int
+        On how many pairs of points an impulse acts.
     moved : bool
         Some vertex is not where it was.
     held : Contacts
@@ -98,6 +100,7 @@ class SafeMotion(NamedTuple):
     least_share: float
     obstacle_share: float
     rounds: int
+    truncations: int
     pushed: int
     moved: bool
     held: Contacts
@@ -108,6 +111,7 @@ class SafeMotion(NamedTuple):
         held: Contacts = copy_items(int(found["held"]), int(found["held_count"]), "contact").view(Contacts)
         return cls(copy_list(int(found["responses"]), vertex_count, np.uint8), float(found["mean_share"]),
                    float(found["least_share"]), float(found["obstacle_share"]), int(found["rounds"]),
+                   int(found["truncations"]),
                    int(found["pushed"]), bool(found["moved"]), held)
 
 

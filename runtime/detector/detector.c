@@ -171,6 +171,7 @@ void detector_free(cscd_detector *d) {
     context_free(context, d->response.vertices);
     context_free(context, d->response.stops);
     context_free(context, d->response.held);
+    context_free(context, d->response.divided);
     context_free(context, d->seen);
     context_free(context, d);
 }

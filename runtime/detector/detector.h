@@ -26,8 +26,8 @@ typedef struct detector_results {
 /* Memory of cscd_detector_make_safe. */
 typedef struct response_memory {
     void *vertices; /* per vertex and object */
-    void *stops, *held;
-    size_t stops_size, held_size; /* in bytes */
+    void *stops, *held, *divided;
+    size_t stops_size, held_size, divided_size; /* in bytes */
 } response_memory;
 
 struct cscd_detector {

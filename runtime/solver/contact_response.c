@@ -1,6 +1,7 @@
-/* A response to contacts by accumulated impulses, and by impact zones. */
+/* A response to contacts by accumulated impulses. */
 #include "runtime/solver/contact_response.h"
 
+#include "runtime/ccd/ccd.h"
 #include "src/core/floating.h"
 #include "src/core/vec3.h"
 
@@ -13,6 +14,9 @@ static const double share_of_way = 0.7;
 /* Where they do, in such distances: an end that is enough, and the one that is aimed at. The next motion then has some room,
  * and tests of pairs that are clearly apart take less time. */
 static const double enough = 1.1, aim = 1.5;
+
+/* The shares of the room between two sides of a plane that their vertices may take, and that a pass aims at. */
+static const double side_allowed = 0.75, side_goal = 0.5;
 
 /* The share of what is missing at the start that points part by in one motion. */
 static const double healing = 0.25;
@@ -64,7 +68,7 @@ static void choose_normal(const cscd_contact *c, const double motion[3], double 
 /* An approach to the goal alone, which rounding and later passes exceed, would never be small enough. */
 static void limit_approach(const contact_response *r, const cscd_contact *c, double start, double approach,
                            contact_stop *stop) {
-    double distance = pair_separation(r->rules, c->kind, c->a, c->b).distance;
+    double distance = response_separation(r->rules, c);
     double share = slack * approach > 2.0 * r->rounding ? slack * approach : 2.0 * r->rounding;
     if (distance == 0.0) {
         stop->allowed = share_of_way * c->toi * approach;
@@ -77,27 +81,76 @@ static void limit_approach(const contact_response *r, const cscd_contact *c, dou
     if (start <= distance) stop->allowed = stop->goal + share;
 }
 
+/* Begins a stop of a contact's vertices. */
+static contact_stop *add_stop(contact_response *r, const cscd_contact *c, const double weights[4]) {
+    contact_stop *stop = &r->stops[r->stop_count++];
+    *stop = (contact_stop){.friction = friction_between(r, c->vertices)};
+    for (int j = 0; j < 4; j++) {
+        size_t v = c->vertices[j];
+        stop->vertices[j] = response_name(r, c->vertices[j]);
+        stop->weights[j] = weights[j];
+        for (size_t k = 0; k < 3; k++)
+            stop->motion[k] += weights[j] * (r->wanted[v * 3 + k] - r->x0[v * 3 + k]);
+    }
+    stop->mobility = mobility_of(r, stop);
+    return stop;
+}
+
+static void take_points(contact_response *r, const cscd_contact *c) {
+    double weights[4], motion[3], from[3] = {0.0, 0.0, 0.0};
+    cscd_stencil_weights(c->kind, c->u, c->v, weights);
+    for (int j = 0; j < 4; j++) add_scaled(from, weights[j], r->x0 + 3 * (size_t)c->vertices[j]);
+    contact_stop *stop = add_stop(r, c, weights);
+    memcpy(motion, stop->motion, sizeof motion);
+    add_shifts(r, stop, motion);
+    choose_normal(c, motion, stop->normal);
+    limit_approach(r, c, vec3_dot(from, stop->normal), max_of(-vec3_dot(motion, stop->normal), 0.0), stop);
+}
+
 void response_take(contact_response *r, const cscd_contact *contacts, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        const cscd_contact *c = &contacts[i];
-        contact_stop *stop = &r->stops[r->stop_count++];
-        *stop = (contact_stop){.friction = friction_between(r, c->vertices)};
-        double from[3] = {0.0, 0.0, 0.0};
-        cscd_stencil_weights(c->kind, c->u, c->v, stop->weights);
-        for (int j = 0; j < 4; j++) {
-            size_t v = c->vertices[j];
-            stop->vertices[j] = response_name(r, c->vertices[j]);
-            add_scaled(from, stop->weights[j], r->x0 + 3 * v);
-            for (size_t k = 0; k < 3; k++)
-                stop->motion[k] += stop->weights[j] * (r->wanted[v * 3 + k] - r->x0[v * 3 + k]);
+    for (size_t i = 0; i < count; i++) take_points(r, &contacts[i]);
+}
+
+/* ---- sides of a plane ---------------------------------------------------------------------------------- */
+
+/* Features that are too near at the start part, as the points of a contact do. */
+static void limit_between_sides(double start, double distance, contact_stop *stop) {
+    const double room = start - distance, missing = aim * distance - start;
+    stop->goal = room > 0.0 ? side_goal * room : -healing * missing;
+    stop->allowed = room > 0.0 ? side_allowed * room : -(side_allowed * healing) * missing;
+}
+
+static void take_sides(contact_response *r, const cscd_contact *c) {
+    const cscd_contact_kind kind = stencil_points(c->kind);
+    const double distance = response_separation(r->rules, c);
+    const int first = points_of_first(kind);
+    double points[4][3];
+    pair_plane plane;
+    for (int j = 0; j < 4; j++) memcpy(points[j], r->x0 + 3 * (size_t)c->vertices[j], sizeof points[j]);
+    pair_plane_find(kind, (const double(*)[3])points, &plane);
+    if (!(plane.gap > 0.0)) {
+        take_points(r, c);
+        return;
+    }
+    for (int i = 0; i < first; i++) {
+        for (int j = first; j < 4; j++) {
+            double weights[4] = {0.0, 0.0, 0.0, 0.0};
+            weights[i] = 1.0;
+            weights[j] = -1.0;
+            contact_stop *stop = add_stop(r, c, weights);
+            memcpy(stop->normal, plane.normal, sizeof stop->normal);
+            limit_between_sides(plane.height[i] - plane.height[j], distance, stop);
         }
-        double motion[3];
-        memcpy(motion, stop->motion, sizeof motion);
-        add_shifts(r, stop, motion);
-        choose_normal(c, motion, stop->normal);
-        limit_approach(r, c, vec3_dot(from, stop->normal), max_of(-vec3_dot(motion, stop->normal), 0.0),
-                       stop);
-        stop->mobility = mobility_of(r, stop);
+    }
+}
+
+/* The plane of a half-space is where its points stop anyway. */
+void response_take_sides(contact_response *r, const cscd_contact *contacts, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (contacts[i].kind == CSCD_CONTACT_VH)
+            take_points(r, &contacts[i]);
+        else
+            take_sides(r, &contacts[i]);
     }
 }
 
@@ -182,107 +235,4 @@ size_t response_count_pushed(const contact_response *r) {
     size_t count = 0;
     for (size_t i = 0; i < r->stop_count; i++) count += r->stops[i].pushed > 0.0;
     return count;
-}
-
-/* ---- impact zones -------------------------------------------------------------------------------------- */
-
-void response_begin_zones(contact_response *r) {
-    for (uint32_t v = 0; v < r->mesh->vertex_count; v++) r->parents[v] = v;
-    r->zone_begin = r->stop_count;
-}
-
-static uint32_t zone_of(const contact_response *r, uint32_t name) {
-    while (r->parents[name] != name) {
-        r->parents[name] = r->parents[r->parents[name]];
-        name = r->parents[name];
-    }
-    return name;
-}
-
-static bool is_free(const contact_response *r, uint32_t name) {
-    return r->mobilities[name] > 0.0;
-}
-
-/* Vertices that cannot move do not join: else all cloth on a floor were one zone. Returns the zone; UINT32_MAX: there is
- * none. */
-static uint32_t join_stop(contact_response *r, const contact_stop *stop) {
-    uint32_t zone = UINT32_MAX;
-    for (int i = 0; i < 4; i++) {
-        if (!is_free(r, stop->vertices[i])) continue;
-        uint32_t other = zone_of(r, stop->vertices[i]);
-        if (zone == UINT32_MAX) zone = other;
-        uint32_t least = zone < other ? zone : other;
-        r->parents[zone] = r->parents[other] = least;
-        zone = least;
-    }
-    return zone;
-}
-
-/* Writes how the vertex moves with its shift. */
-static void motion_with_shift(const contact_response *r, uint32_t vertex, double motion[3]) {
-    vec3_subtract(r->wanted + (size_t)vertex * 3, r->x0 + (size_t)vertex * 3, motion);
-    add_scaled(motion, 1.0, r->shift + (size_t)response_name(r, vertex) * 3);
-}
-
-static void sum_up_zones(contact_response *r) {
-    uint32_t count = r->mesh->vertex_count;
-    for (uint32_t v = 0; v < count; v++) r->zones[v] = (impact_zone){.share = 1.0};
-    for (uint32_t v = 0; v < count; v++) {
-        if (response_name(r, v) != v || !is_free(r, v)) continue;
-        impact_zone *zone = &r->zones[zone_of(r, v)];
-        double motion[3], mass = 1.0 / r->mobilities[v];
-        motion_with_shift(r, v, motion);
-        add_scaled(zone->momentum, mass, motion);
-        zone->mass += mass;
-    }
-}
-
-static void tell_zones(contact_response *r) {
-    for (size_t i = r->zone_begin; i < r->stop_count; i++) {
-        const contact_stop *stop = &r->stops[i];
-        for (int j = 0; j < 4; j++) {
-            if (!is_free(r, stop->vertices[j])) continue;
-            impact_zone *zone = &r->zones[zone_of(r, stop->vertices[j])];
-            for (int k = 0; k < 4; k++) {
-                double motion[3];
-                if (is_free(r, stop->vertices[k])) continue;
-                motion_with_shift(r, stop->vertices[k], motion);
-                add_scaled(zone->told, 1.0, motion);
-                zone->tellers += 1.0;
-            }
-        }
-    }
-}
-
-static void move_with_zone(contact_response *r, uint32_t name) {
-    const impact_zone *zone = &r->zones[zone_of(r, name)];
-    if (zone->share == 1.0) return;
-    double motion[3];
-    motion_with_shift(r, name, motion);
-    for (size_t k = 0; k < 3; k++) {
-        double common = zone->tellers > 0.0 ? zone->told[k] / zone->tellers : zone->momentum[k] / zone->mass;
-        r->shift[(size_t)name * 3 + k] += (1.0 - zone->share) * (common - motion[k]);
-    }
-}
-
-void response_join(contact_response *r, const cscd_contact *contacts, size_t count) {
-    const contact_stop *taken = &r->stops[r->stop_count - count];
-    for (size_t i = 0; i < count; i++) join_stop(r, &taken[i]);
-    sum_up_zones(r);
-    tell_zones(r);
-    for (size_t i = 0; i < count; i++) {
-        for (int j = 0; j < 4; j++) {
-            if (!is_free(r, taken[i].vertices[j])) continue;
-            impact_zone *zone = &r->zones[zone_of(r, taken[i].vertices[j])];
-            zone->share = min_of(zone->share, share_of_way * contacts[i].toi);
-        }
-    }
-    for (uint32_t v = 0; v < r->mesh->vertex_count; v++) {
-        if (response_name(r, v) == v && is_free(r, v)) move_with_zone(r, v);
-    }
-}
-
-bool response_in_zone(const contact_response *r, uint32_t vertex) {
-    uint32_t name = response_name(r, vertex), zone = zone_of(r, name);
-    return is_free(r, name) && (zone != name || r->zones[name].share < 1.0);
 }

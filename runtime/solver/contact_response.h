@@ -1,11 +1,11 @@
 /* A response to contacts: a shift of the vertices that a motion must not bring together. First every contact stops the
- * approach of its points; what is left then moves together, in impact zones. */
+ * approach of its points. The features of a pair that then comes into contact elsewhere stay on their sides of a plane. */
 #pragma once
 
 #include "runtime/narrow_phase/narrow_phase.h"
 
-/* Limits how far the two points of a contact may approach along its normal, from the start to the end of a motion. Vertices
- * are named by their seams. */
+/* Limits how far two points may approach along a normal, from the start to the end of a motion: the points of a contact, or one
+ * vertex on each side of a plane. Vertices are named by their seams. */
 typedef struct contact_stop {
     uint32_t vertices[4];
     uint32_t seen;        /* the shifts until this one are known to it */
@@ -19,13 +19,6 @@ typedef struct contact_stop {
     double pushed;        /* the impulse along the normal so far, 0 or more */
     double rubbed[3];     /* that across it */
 } contact_stop;
-
-/* A set of vertices that move together. Its smallest vertex names it. */
-typedef struct impact_zone {
-    double momentum[3], mass; /* sums over its vertices */
-    double told[3], tellers;  /* sum and number of the motions of obstacles in contact with it */
-    double share;             /* what this round leaves of motions that differ from the common one */
-} impact_zone;
 
 /* One motion, and the shift of its end. The arrays are the detector's. */
 typedef struct contact_response {
@@ -44,32 +37,31 @@ typedef struct contact_response {
 
     contact_stop *stops; /* of all rounds */
     size_t stop_count;
-    size_t zone_begin; /* the stops from here on are of zones */
-
-    uint32_t *parents; /* per name: a forest of zones */
-    impact_zone *zones;
 } contact_response;
 
 static inline uint32_t response_name(const contact_response *r, uint32_t vertex) {
     return r->names != NULL ? r->names[vertex] : vertex;
 }
 
-/* Takes over contacts, for which there is room among the stops. */
+/* Returns the distance beyond which the pair of a contact is surely out of contact. */
+static inline double response_separation(const swept_interval *rules, const cscd_contact *c) {
+    const separation s = pair_separation(rules, c->kind, c->a, c->b);
+    return s.distance + 2.0 * s.tolerance;
+}
+
+/* Takes over contacts, for each of which there is room among the stops: their points stop. */
 void response_take(contact_response *r, const cscd_contact *contacts, size_t count);
 
-/* The number of contacts on which an impulse acts. */
+/* The most stops that one contact needs. */
+enum { STOPS_PER_CONTACT = 4 };
+
+/* Takes over contacts, for each of which there is that much room: vertices of their features stop before the plane between these at
+ * x0. No contact of the pair is possible on a motion that all of its stops allow. */
+void response_take_sides(contact_response *r, const cscd_contact *contacts, size_t count);
+
+/* The number of stops on which an impulse acts. */
 size_t response_count_pushed(const contact_response *r);
 
 /* Shifts vertices until no pair approaches by more than it may, or as near to that as some passes come: projected
  * Gauss-Seidel on accumulated impulses, so that momentum is kept, with Coulomb friction. The result does not depend on threads. */
 void response_stop(contact_response *r);
-
-/* Begins impact zones: every vertex is one of its own, and stops that are taken from now on join them. */
-void response_begin_zones(contact_response *r);
-
-/* Brings the vertices of the contacts, which have been taken, nearer to the common motion of their zone: that of the obstacles
- * in it, or else that of its centre of mass, which keeps momentum (Harmon et al. 2008). */
-void response_join(contact_response *r, const cscd_contact *contacts, size_t count);
-
-/* True if the vertex moves with an impact zone. */
-bool response_in_zone(const contact_response *r, uint32_t vertex);

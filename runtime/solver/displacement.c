@@ -432,7 +432,7 @@ static void carry_states_over(cscd_detector *d, const double *end) {
 
 /* ---- one truncation ----------------------------------------------------------------------------------- */
 
-static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t **first) {
+static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w) {
     const size_t count = d->mesh->vertex_count, objects = d->mesh->object_count;
     if (d->vertex_scratch == NULL)
         d->vertex_scratch =
@@ -443,7 +443,7 @@ static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t
     w->motions = w->ways + count;
     w->of_objects = w->motions + 3 * count;
     w->tries = (void *)(w->of_objects + objects);
-    *first = w->tries + count;
+    w->planes.first = w->tries + count;
     return CSCD_OK;
 }
 
@@ -508,31 +508,48 @@ static cscd_status find_pairs_to_divide(cscd_detector *d, truncation_work *w, do
     return status;
 }
 
+static cscd_status truncate_to_planes(cscd_detector *d, truncation_work *w, const cscd_proximities *pairs) {
+    const near_rules rules = {d->mesh, &d->config};
+    const division_quest quest = {w->motion->x0, w->motion->x1, w->farthest, pairs};
+    cscd_status status = reserve_planes(d, pairs->count, &w->planes);
+    if (status != CSCD_OK) return status;
+    division_planes_find(&rules, &quest, &w->planes);
+    truncate_all(w, d->context->threads);
+    return CSCD_OK;
+}
+
+static truncation_work begin_truncation(const cscd_detector *d, const wanted_motion *motion, double farthest,
+                                        double *end) {
+    return (truncation_work){d->mesh, d->config.exclusions.names, motion, .farthest = farthest, .end = end};
+}
+
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
                             cscd_truncation *out) {
-    truncation_work work = {d->mesh, d->config.exclusions.names, motion, .farthest = 0.5 * search_radius,
-                            .end = end};
-    size_t *first;
+    truncation_work work = begin_truncation(d, motion, 0.5 * search_radius, end);
     bool known = config_culls(&d->config) && start_states_hold(&d->known.starts, motion->x0);
     cscd_proximities near = {.count = 0};
     size_t near_count;
-    cscd_status status = reserve_vertices(d, &work, &first);
+    cscd_status status = reserve_vertices(d, &work);
     if (status == CSCD_OK) status = find_pairs_to_divide(d, &work, search_radius, &near, &near_count);
     if (status == CSCD_LIST_TOO_LONG) *out = (cscd_truncation){.near_count = near_count};
-    if (status == CSCD_OK) status = reserve_planes(d, near.count, &work.planes);
-    if (status != CSCD_OK) return status;
-    const near_rules rules = {d->mesh, &d->config};
-    const division_quest quest = {motion->x0, motion->x1, work.farthest, &near};
-    work.planes.first = first;
-    division_planes_find(&rules, &quest, &work.planes);
-    truncate_all(&work, d->context->threads);
-    status = context_progress_status(d->context); /* before anything is known of the end */
+    if (status == CSCD_OK) status = truncate_to_planes(d, &work, &near);
+    /* before anything is known of the end */
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return status;
     *out = (cscd_truncation){.held = d->results.proximities.items, .near_count = near_count};
     sum_up_vertices(&work, out);
     out->held_count = keep_held(d, motion->x0, &work.planes);
     if (known) carry_states_over(d, end);
     return CSCD_OK;
+}
+
+cscd_status truncation_divide(cscd_detector *d, const wanted_motion *motion, const cscd_proximities *pairs,
+                              double *end) {
+    truncation_work work = begin_truncation(d, motion, INFINITY, end);
+    cscd_status status = reserve_vertices(d, &work);
+    if (status != CSCD_OK) return status;
+    measure_ways(&work);
+    return truncate_to_planes(d, &work, pairs);
 }
 
 /* ---- cscd_detector_truncate ---------------------------------------------------------------------------- */

@@ -66,7 +66,7 @@ static cscd_status grow_block(cscd_context *context, void **block, size_t *size,
     return CSCD_OK;
 }
 
-enum { BYTES_PER_VERTEX = 7 * sizeof(double) + sizeof(impact_zone) + 2 * sizeof(uint32_t) + sizeof(uint8_t) };
+enum { BYTES_PER_VERTEX = 7 * sizeof(double) + sizeof(uint32_t) + sizeof(uint8_t) };
 
 static cscd_status reserve_work(safe_work *w) {
     cscd_detector *d = w->detector;
@@ -83,9 +83,7 @@ static cscd_status reserve_work(safe_work *w) {
     r->shift = doubles + 3 * vertices;
     r->mobilities = doubles + 6 * vertices;
     w->shares = doubles + 7 * vertices;
-    r->zones = (void *)(w->shares + objects);
-    r->parents = (void *)(r->zones + vertices);
-    r->shifted = r->parents + vertices;
+    r->shifted = (void *)(w->shares + objects);
     w->kinds = (void *)(r->shifted + vertices);
     w->end = d->reached;
     return CSCD_OK;
@@ -181,27 +179,28 @@ static void begin_work(safe_work *w) {
 
 /* ---- what touches at the start ------------------------------------------------------------------------- */
 
-static void hold_vertex(safe_work *w, uint32_t vertex) {
-    memcpy(w->wanted + 3 * (size_t)vertex, w->motion->x0 + 3 * (size_t)vertex, sizeof(double[3]));
+static void hold_vertex(const safe_work *w, uint32_t vertex) {
+    const contact_response *r = &w->response;
+    const size_t i = (size_t)vertex * 3, name = response_name(r, vertex);
     w->kinds[vertex] = CSCD_RESPONSE_HELD;
+    memcpy(w->wanted + i, w->motion->x0 + i, sizeof(double[3]));
+    memcpy(w->end + i, w->motion->x0 + i, sizeof(double[3]));
+    memset(r->shift + 3 * name, 0, sizeof(double[3]));
+    r->mobilities[name] = 0.0;
 }
 
 /* Vertices stay with those of their seam, and with their obstacle. */
-static void hold_marked(safe_work *w) {
+static void hold_with_marked(const safe_work *w) {
     const cscd_mesh *mesh = w->detector->mesh;
-    contact_response *r = &w->response;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (w->kinds[v] != CSCD_RESPONSE_HELD) continue;
-        w->kinds[response_name(r, v)] = CSCD_RESPONSE_HELD;
+        w->kinds[response_name(&w->response, v)] = CSCD_RESPONSE_HELD;
         uint32_t object = cscd_mesh_vertex_object(mesh, v);
         if (is_given(mesh, object)) w->shares[object] = 0.0;
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        bool held = w->kinds[response_name(r, v)] == CSCD_RESPONSE_HELD;
-        if (!held && w->shares[cscd_mesh_vertex_object(mesh, v)] > 0.0) continue;
-        hold_vertex(w, v);
-        r->mobilities[response_name(r, v)] = 0.0;
-        memset(r->shift + 3 * (size_t)response_name(r, v), 0, sizeof(double[3]));
+        bool held = w->kinds[response_name(&w->response, v)] == CSCD_RESPONSE_HELD;
+        if (held || w->shares[cscd_mesh_vertex_object(mesh, v)] == 0.0) hold_vertex(w, v);
     }
 }
 
@@ -222,7 +221,7 @@ static cscd_status hold_touching(safe_work *w) {
     for (size_t i = 0; i < touching.count; i++) {
         for (int j = 0; j < 4; j++) w->kinds[touching.items[i].vertices[j]] = CSCD_RESPONSE_HELD;
     }
-    hold_marked(w);
+    hold_with_marked(w);
     return CSCD_OK;
 }
 
@@ -235,19 +234,17 @@ static bool is_held(const safe_work *w, const cscd_contact *c) {
 
 /* ---- rounds -------------------------------------------------------------------------------------------- */
 
-/* Contacts stop what approaches in the first rounds, and then join zones. */
-enum { STOP_ROUNDS = 8, ROUNDS = 16 };
+/* The response ends after this many rounds, or after fewer when the contacts have not become fewer for a while. */
+enum { ROUNDS = 32, PATIENCE = 6 };
 
-/* Finds the contacts of the trial motion, and takes those that are not held among the stops. */
-static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found) {
+/* Finds the contacts of the motion to the trial end but those that are held. */
+static cscd_status find_contacts(safe_work *w, step_rule rule, cscd_contacts *found) {
     cscd_detector *d = w->detector;
-    contact_response *r = &w->response;
-    place_end(w);
     cscd_status status = tries_find(&w->tries, w->motion->x0, w->end, CSCD_MODE_ALL, rule, found);
     if (status != CSCD_OK || found->count == 0) return status;
     if (rule == STEP_BELOW_FLOOR && found->items[0].toi == 0.0 && !w->start_looked_at) {
         status = hold_touching(w);
-        return status == CSCD_OK ? find_stops(w, rule, found) : status;
+        return status == CSCD_OK ? find_contacts(w, rule, found) : status;
     }
     cscd_contact *items = d->results.contacts.items;
     size_t count = 0;
@@ -255,30 +252,49 @@ static cscd_status find_stops(safe_work *w, step_rule rule, cscd_contacts *found
         if (!is_held(w, &items[i])) items[count++] = items[i];
     }
     found->count = count;
-    if (count >= UINT32_MAX - r->stop_count || count > SIZE_MAX / 4 / sizeof(contact_stop) - r->stop_count)
-        return CSCD_OUT_OF_MEMORY;
-    status = grow_block(d->context, &d->response.stops, &d->response.stops_size,
-                        (r->stop_count + count) * sizeof(contact_stop), r->stop_count * sizeof(contact_stop));
-    r->stops = d->response.stops;
-    if (status == CSCD_OK) response_take(r, items, count);
     return status;
 }
 
-/* Responds until no contact is left, or no round. */
+/* Makes room for so many more elements of a block that has some. */
+static cscd_status grow_list(safe_work *w, void **block, size_t *block_size, size_t count, size_t more,
+                             size_t size) {
+    if (more >= UINT32_MAX - count || more > SIZE_MAX / 2 / size - count) return CSCD_OUT_OF_MEMORY;
+    return grow_block(w->detector->context, block, block_size, (count + more) * size, count * size);
+}
+
+/* Responds to contacts: to the first ones where they are, and later between their features, so that none of them comes back
+ * elsewhere. */
+static cscd_status respond_to(safe_work *w, const cscd_contacts *found, bool between_sides) {
+    response_memory *memory = &w->detector->response;
+    contact_response *r = &w->response;
+    const size_t more = between_sides ? found->count * STOPS_PER_CONTACT : found->count;
+    cscd_status status =
+        grow_list(w, &memory->stops, &memory->stops_size, r->stop_count, more, sizeof(contact_stop));
+    if (status != CSCD_OK) return status;
+    r->stops = memory->stops;
+    if (between_sides)
+        response_take_sides(r, found->items, found->count);
+    else
+        response_take(r, found->items, found->count);
+    response_stop(r);
+    return CSCD_OK;
+}
+
+/* Responds until no contact is left, or while that helps. */
 static cscd_status respond_in_rounds(safe_work *w, bool *free) {
-    cscd_contacts found;
     const bool quick = w->detector->config.limit.distance > 0.0 && !config_is_thick(&w->detector->config);
-    for (uint32_t round = 0; round < ROUNDS; round++) {
-        if (round == STOP_ROUNDS) response_begin_zones(&w->response);
-        cscd_status status = find_stops(w, quick && round == 0 ? STEP_NEARLY : STEP_BELOW_FLOOR, &found);
+    cscd_contacts found;
+    size_t fewest = SIZE_MAX;
+    for (uint32_t round = 0, since = 0; round < ROUNDS && round - since < PATIENCE; round++) {
+        place_end(w);
+        cscd_status status = find_contacts(w, quick && round == 0 ? STEP_NEARLY : STEP_BELOW_FLOOR, &found);
+        w->found.rounds++;
+        *free = status == CSCD_OK && found.count == 0;
+        if (status != CSCD_OK || *free) return status;
+        if (found.count < fewest) since = round;
+        fewest = found.count < fewest ? found.count : fewest;
+        status = respond_to(w, &found, round > 0);
         if (status != CSCD_OK) return status;
-        w->found.rounds = round + 1;
-        *free = found.count == 0;
-        if (*free) return CSCD_OK;
-        if (round < STOP_ROUNDS)
-            response_stop(&w->response);
-        else
-            response_join(&w->response, found.items, found.count);
     }
     place_end(w);
     return CSCD_OK;
@@ -292,27 +308,20 @@ static bool differ_in_place(const double *a, const double *b, size_t vertex) {
     return false;
 }
 
-static double longest_motion(const safe_work *w, const double *end) {
-    double longest = 0.0;
-    for (size_t v = 0; v < w->detector->mesh->vertex_count; v++)
-        longest = max_of(longest, vec3_squared_distance(end + 3 * v, w->motion->x0 + 3 * v));
-    return sqrt(longest);
-}
-
 /* Obstacles move as a whole, a little less than the least share of any of their vertices. */
 static const double share_of_least = 1.0 - 0x1p-30;
 
 /* Finds how far each obstacle went. Returns whether any fell short of its share. */
-static bool lower_obstacle_shares(safe_work *w, const double *reached) {
+static bool lower_obstacle_shares(safe_work *w) {
     const cscd_mesh *mesh = w->detector->mesh;
     bool any = false;
     for (uint32_t o = 0; o < mesh->object_count; o++) {
         if (!is_given(mesh, o)) continue;
         double least = w->shares[o];
         for (size_t v = mesh->objects[o].first_vertex, i = 0; i < mesh->objects[o].vertex_count; i++, v++) {
-            if (!differ_in_place(reached, w->wanted, v)) continue;
+            if (!differ_in_place(w->end, w->wanted, v)) continue;
             double squared = vec3_squared_distance(w->motion->x1 + 3 * v, w->motion->x0 + 3 * v);
-            double went = vec3_squared_distance(reached + 3 * v, w->motion->x0 + 3 * v);
+            double went = vec3_squared_distance(w->end + 3 * v, w->motion->x0 + 3 * v);
             least = min_of(least, sqrt(went / squared) * share_of_least);
         }
         any |= least < w->shares[o];
@@ -335,35 +344,82 @@ static void move_obstacles(const safe_work *w) {
 
 enum { OBSTACLE_ROUNDS = 3 };
 
-/* Planes shorten what is still in contact. What is wanted is the end of the response from here on, and obstacles that cannot
- * get there go back as a whole, at last to where they were. */
-static cscd_status truncate_rest(safe_work *w) {
+/* Shortens motions to planes between the pairs. Obstacles that cannot get where they want go back as a whole, at last to where
+ * they were. */
+static cscd_status divide_pairs(safe_work *w, const cscd_proximities *pairs) {
     cscd_detector *d = w->detector;
-    tries_withdraw(&w->tries);
-    memcpy(w->wanted, w->end, (size_t)d->mesh->vertex_count * sizeof(double[3]));
     const wanted_motion motion = {w->motion->x0, w->wanted, w->motion->scalars};
-    double radius = min_of(2.0 * (1.0 + 0x1p-40) * longest_motion(w, w->wanted), 0x1p299);
-    start_states_save(&d->known.starts);
     for (int round = 0;; round++) {
-        cscd_truncation cut;
-        cscd_status status = truncation_find(d, &motion, radius, w->end, &cut);
-        w->found.rounds++;
-        if (status != CSCD_OK || !lower_obstacle_shares(w, w->end)) return status;
+        cscd_status status = truncation_divide(d, &motion, pairs, w->end);
+        if (status != CSCD_OK || !lower_obstacle_shares(w)) return status;
         for (uint32_t o = 0; round >= OBSTACLE_ROUNDS && o < d->mesh->object_count; o++)
             if (w->shares[o] < 1.0) w->shares[o] = 0.0;
         move_obstacles(w);
-        step_withdraw(d);
+    }
+}
+
+static cscd_status add_pairs(safe_work *w, const cscd_contacts *found, cscd_proximities *pairs) {
+    response_memory *memory = &w->detector->response;
+    cscd_status status = grow_list(w, &memory->divided, &memory->divided_size, pairs->count, found->count,
+                                   sizeof(cscd_proximity));
+    if (status != CSCD_OK) return status;
+    cscd_proximity *items = memory->divided;
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        cscd_proximity *pair = &items[pairs->count++];
+        *pair = (cscd_proximity){.kind = c->kind, .a = c->a, .b = c->b};
+        memcpy(pair->vertices, c->vertices, sizeof pair->vertices);
+        pair->separation = response_separation(&w->rules, c);
+    }
+    pairs->items = items;
+    return CSCD_OK;
+}
+
+/* All go the same share of what is left of their ways. */
+static void shorten_all(const safe_work *w, double share) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        if (is_given(mesh, o)) w->shares[o] *= share;
+        size_t begin = (size_t)mesh->objects[o].first_vertex * 3;
+        size_t end = begin + (size_t)mesh->objects[o].vertex_count * 3;
+        for (size_t i = begin; i < end; i++) {
+            double x0 = w->motion->x0[i], way = share * (w->end[i] - x0);
+            w->end[i] = share > 0.0 ? place_coordinate(x0 + way, scalar_of(w, o)) : x0;
+        }
+    }
+}
+
+/* Planes shorten what is in contact, mostly in a few rounds. The last resort is a certified step, and at last nothing moves. */
+enum { PLANE_ROUNDS = 20, STEP_ROUNDS = 4 };
+
+/* Shortens what is still in contact, and what that brings into contact. What is wanted is the end of the response from here on. */
+static cscd_status truncate_rest(safe_work *w) {
+    cscd_proximities pairs = {.count = 0};
+    cscd_contacts found;
+    memcpy(w->wanted, w->end, w->detector->mesh->vertex_count * sizeof(double[3]));
+    for (uint32_t round = 0;; round++) {
+        cscd_status status = find_contacts(w, STEP_BELOW_FLOOR, &found);
+        w->found.rounds++;
+        if (status != CSCD_OK || found.count == 0 || round > PLANE_ROUNDS + STEP_ROUNDS) return status;
+        w->found.truncations++;
+        if (round < PLANE_ROUNDS) {
+            status = add_pairs(w, &found, &pairs);
+            if (status == CSCD_OK) status = divide_pairs(w, &pairs);
+            if (status != CSCD_OK) return status;
+        } else {
+            const double step = w->detector->config.options.step_factor * found.items[0].toi;
+            shorten_all(w, round < PLANE_ROUNDS + STEP_ROUNDS ? step : 0.0);
+        }
     }
 }
 
 /* ---- the answer ---------------------------------------------------------------------------------------- */
 
-static uint8_t response_to(const safe_work *w, uint32_t vertex, bool truncated) {
+static uint8_t kind_of(const safe_work *w, uint32_t vertex) {
     if (w->kinds[vertex] == CSCD_RESPONSE_HELD) return CSCD_RESPONSE_HELD;
-    if (truncated && (differ_in_place(w->end, w->wanted, vertex) ||
-                      w->shares[cscd_mesh_vertex_object(w->detector->mesh, vertex)] < 1.0))
+    if (w->found.truncations > 0 && (differ_in_place(w->end, w->wanted, vertex) ||
+                                     w->shares[cscd_mesh_vertex_object(w->detector->mesh, vertex)] < 1.0))
         return CSCD_RESPONSE_TRUNCATED;
-    if (w->response.zone_begin > 0 && response_in_zone(&w->response, vertex)) return CSCD_RESPONSE_ZONE;
     const double *shift = w->response.shift + 3 * (size_t)response_name(&w->response, vertex);
     return vec3_largest(shift) > 0.0 ? CSCD_RESPONSE_STOPPED : CSCD_RESPONSE_FREE;
 }
@@ -381,14 +437,14 @@ static double surviving_share(const safe_work *w, size_t vertex) {
     return max_of(0.0, min_of(share, 1.0));
 }
 
-static void sum_up_motion(safe_work *w, bool truncated) {
+static void sum_up_motion(safe_work *w) {
     const cscd_mesh *mesh = w->detector->mesh;
     cscd_safe_motion *out = &w->found;
     double sum = 0.0;
     size_t movers = 0;
     out->least_share = out->obstacle_share = 1.0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        w->kinds[v] = response_to(w, v, truncated);
+        w->kinds[v] = kind_of(w, v);
         out->response_counts[w->kinds[v]]++;
         out->moved |= differ_in_place(w->end, w->motion->x0, v);
         double share = surviving_share(w, v);
@@ -416,8 +472,8 @@ static cscd_status find_safe_motion(safe_work *w) {
     if (status == CSCD_OK && !free) status = truncate_rest(w);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return status;
-    if (free) step_take(d, w->end);
-    sum_up_motion(w, !free);
+    step_take(d, w->end);
+    sum_up_motion(w);
     return CSCD_OK;
 }
 

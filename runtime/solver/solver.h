@@ -59,6 +59,11 @@ cscd_status truncation_scalars(cscd_detector *d, const char *function, const csc
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
                             cscd_truncation *out);
 
+/* The same, by planes between these pairs alone: of each, kind, a, b, vertices and separation. Other pairs may come into contact,
+ * and what the detector knows of x0 remains. */
+cscd_status truncation_divide(cscd_detector *d, const wanted_motion *motion, const cscd_proximities *pairs,
+                              double *end);
+
 /* ---- certified steps ----------------------------------------------------------------------------------- */
 
 /* INVALID_ARGUMENT, with a sentence that begins with the function's name, if the method loses contacts. */
