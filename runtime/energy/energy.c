@@ -108,24 +108,23 @@ static cscd_status take_options(cscd_context *context, const cscd_energy_options
     return status == CSCD_OK ? check_options(context, out) : status;
 }
 
-/* The weights of a's vertices are from 0 to 1, those of b's from -1 to 0, and they add up to 0, up to rounding. */
+/* The weights of a's vertices are from 0 to 1, those of b's from -1 to 0, and they add up to 0, up to rounding. Every item is looked at
+ * in every call, so there is no branch here. */
 static bool weights_fit(const cscd_proximity *p) {
-    const int first = p->kind == CSCD_CONTACT_EE || p->kind == CSCD_CONTACT_EV ? 2 : 1;
-    double sums[2] = {0.0, 0.0};
-    for (int i = 0; i < 4; i++) {
-        const double weight = i < first ? p->weights[i] : -p->weights[i];
-        if (!(weight >= 0.0 && weight <= 1.0)) return false;
-        sums[i >= first] += weight;
-    }
-    return fabs(sums[0] - 1.0) <= 1e-9 && fabs(sums[1] - 1.0) <= 1e-9;
+    const bool edge = (p->kind == CSCD_CONTACT_EE) | (p->kind == CSCD_CONTACT_EV);
+    const double first = p->weights[0], second = edge ? p->weights[1] : -p->weights[1];
+    const double third = -p->weights[2], last = -p->weights[3];
+    const double a = first + (edge ? second : 0.0), b = (edge ? 0.0 : second) + third + last;
+    return (first >= 0.0) & (second >= 0.0) & (third >= 0.0) & (last >= 0.0) & (fabs(a - 1.0) <= 1e-9) &
+           (fabs(b - 1.0) <= 1e-9);
 }
 
 static const char *fault_of_item(const cscd_mesh *mesh, const cscd_proximity *p) {
     if ((unsigned)p->kind > CSCD_CONTACT_VH || p->kind == CSCD_CONTACT_TT)
         return "has a kind without an energy";
-    for (int i = 0; i < 4; i++) {
-        if (p->vertices[i] >= mesh->vertex_count) return "names a vertex that the mesh does not have";
-    }
+    const uint32_t *v = p->vertices, end = mesh->vertex_count;
+    if (!((v[0] < end) & (v[1] < end) & (v[2] < end) & (v[3] < end)))
+        return "names a vertex that the mesh does not have";
     if (!weights_fit(p)) return "has weights that are not those of its kind (cscd_stencil)";
     if (!is_amount(p->weight)) return "has a weight below 0 or without an end";
     if (!is_amount(p->separation)) return "has a separation below 0 or without an end";
@@ -139,6 +138,7 @@ static cscd_status check_items(const cscd_energy *e, const cscd_proximities *ite
         return context_fail(e->context, CSCD_INVALID_ARGUMENT,
                             "there are %zu items, expected at most 2^38 - 2^6", items->count);
     for (size_t i = 0; i < items->count; i++) {
+        energy_item_prefetch(&items->items[i]);
         const char *fault = fault_of_item(&e->mesh, &items->items[i]);
         if (fault != NULL) return context_fail(e->context, CSCD_INVALID_ARGUMENT, "item %zu %s", i, fault);
     }
@@ -153,32 +153,40 @@ static cscd_status read_positions(cscd_energy *e, const cscd_view *views, const 
 
 /* ---- near pairs ---------------------------------------------------------------------------------------- */
 
-/* Near pairs at one moment. */
-typedef struct near_terms {
-    cscd_energy_options options;
-    const cscd_proximity *items;
-    const double *x;
-} near_terms;
-
 static void evaluate_near(const void *of, size_t i, energy_term *term) {
     const near_terms *n = of;
     energy_pair_evaluate(&n->options, &n->items[i], n->x, term);
 }
 
+/* Of pairs whose points are in one place a kernel does not know the normal. */
+static void evaluate_eight_near(const void *of, size_t first, size_t count, const energy_outputs *out) {
+    const near_terms *n = of;
+    if (out->gradients == NULL) {
+        n->kernels->values(n, first, count, out);
+        return;
+    }
+    uint32_t left = n->kernels->gradients(n, first, count, out);
+    for (size_t i = 0; left != 0 && i < count; i++) {
+        energy_term term = {.gradient = out->gradients[i]};
+        if ((left >> i & 1) != 0) evaluate_near(of, first + i, &term);
+    }
+}
+
 static energy_terms terms_of_items(const near_terms *near, size_t count) {
-    return (energy_terms){evaluate_near,      near, count, near->items->vertices, &near->items->kind,
-                          sizeof *near->items};
+    return (energy_terms){evaluate_near,      evaluate_eight_near, near, count, near->items->vertices,
+                          &near->items->kind, sizeof *near->items};
 }
 
 static energy_terms terms_of_friction(const cscd_energy *e, const friction_motion *motion) {
-    return (energy_terms){friction_term_evaluate, motion,           e->frozen_count,
-                          e->frozen->vertices,    &e->frozen->kind, sizeof *e->frozen};
+    return (energy_terms){
+        friction_term_evaluate, NULL, motion, e->frozen_count, e->frozen->vertices, &e->frozen->kind,
+        sizeof *e->frozen};
 }
 
 static cscd_status evaluate_items(cscd_energy *e, const cscd_proximities *items, const cscd_view *positions,
                                   const cscd_energy_options *options, const cscd_energy_targets *targets,
                                   cscd_energy_sum *out) {
-    near_terms near;
+    near_terms near = {.kernels = energy_kernels_of(e->context)};
     if (out == NULL)
         return context_fail(e->context, CSCD_INVALID_ARGUMENT, "cscd_energy_evaluate: out is NULL");
     cscd_status status = take_options(e->context, options, &near.options);

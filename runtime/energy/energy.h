@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cscd/energy.h"
+#include "src/core/kernels.h"
 #include "src/mesh/mesh.h"
 
 /* ---- laws ---------------------------------------------------------------------------------------------- */
@@ -12,8 +13,16 @@ typedef struct energy_curve {
 } energy_curve;
 
 /* The natural logarithm of a normal number above 0, to 2 ulp. It has the same bits on every processor, which libm does not
- * promise. */
+ * promise.
+ *
+ * x = m 2^k with m in [1/sqrt 2, sqrt 2], and ln m = 2 artanh s, s = (m - 1) / (m + 1), whose series in s^2 <= 0.0295
+ * ends below 2^-53 of itself after eleven terms. ln 2 = high + low, and k * high is exact for the exponents of doubles. */
 double natural_logarithm(double x);
+
+enum { LOGARITHM_TERMS = 11 };
+extern const double logarithm_series[LOGARITHM_TERMS];
+#define LOGARITHM_2_HIGH 0x1.62e42fee00000p-1
+#define LOGARITHM_2_LOW  0x1.a39ef35793c76p-33
 
 /* The law at a distance, without stiffness and weight. At or below the separation a barrier has the value INFINITY and
  * no slope. */
@@ -37,6 +46,9 @@ typedef struct pair_frame {
     double distance; /* of VH the height, below 0 behind the plane */
 } pair_frame;
 
+/* A slide along a direction this much shorter than its vector, both squared, as of two edges that are parallel, is none of its own. */
+#define LEAST_SQUARED_SINE 1e-26
+
 /* Finds the frame of an item at the positions, 3 doubles for each vertex. */
 void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *out);
 
@@ -44,6 +56,13 @@ void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *ou
 static inline int energy_vertices_of(cscd_contact_kind kind) {
     if (kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_VH) return 2;
     return kind == CSCD_CONTACT_EV ? 3 : 4;
+}
+
+/* Asks for an item a page later, which processors do not foresee; behind the last one there may be no memory, which does no harm. */
+static inline void energy_item_prefetch(const cscd_proximity *item) {
+    const uintptr_t later = (uintptr_t)item + 4096;
+    for (uintptr_t line = 0; line < sizeof *item; line += 64)
+        __builtin_prefetch((const void *)(later + line));
 }
 
 /* The factor of an item, and the distance that it is to keep. */
@@ -69,6 +88,38 @@ void energy_pair_evaluate(const cscd_energy_options *options, const cscd_proximi
 /* The force between an item's points along the normal, at these positions, and the frame there. */
 double energy_pair_force(const cscd_energy_options *options, const cscd_proximity *item, const double *x,
                          pair_frame *frame);
+
+/* ---- pairs, eight at a time ------------------------------------------------------------------------------ */
+
+typedef struct near_terms near_terms;
+
+/* Where values and derivatives of terms go; values and gaps have room for LANES. */
+typedef struct energy_outputs {
+    double *values, *gaps;
+    double (*gradients)[4][3]; /* NULL: not wanted */
+} energy_outputs;
+
+/* These evaluate `count` items, LANES at most, as energy_pair_evaluate, to the same bits. */
+typedef struct energy_kernels {
+    uint32_t (*values)(const near_terms *near, size_t first, size_t count, const energy_outputs *out);
+
+    /* Returns a set of lanes whose gradients are not found: of pairs whose points are in one place. */
+    uint32_t (*gradients)(const near_terms *near, size_t first, size_t count, const energy_outputs *out);
+} energy_kernels;
+
+DECLARE_KERNELS(energy_kernels);
+
+static inline const energy_kernels *energy_kernels_of(const cscd_context *context) {
+    return KERNELS_OF(context, energy_kernels);
+}
+
+/* Near pairs at one moment. */
+struct near_terms {
+    cscd_energy_options options;
+    const cscd_proximity *items;
+    const double *x;
+    const energy_kernels *kernels;
+};
 
 /* ---- eigenvectors -------------------------------------------------------------------------------------- */
 
@@ -99,6 +150,8 @@ int diagonal_and_square_negative(const diagonal_and_square *m, double values[2],
 /* The terms of a sum. */
 typedef struct energy_terms {
     void (*evaluate)(const void *of, size_t i, energy_term *term);
+    /* Evaluates up to LANES terms without Hessians; NULL: as each by itself. */
+    void (*evaluate_eight)(const void *of, size_t first, size_t count, const energy_outputs *out);
     const void *of;
     size_t count;
     /* Where the vertices of term 0 are, how many bytes later those of the next one, and how many of four each has. */

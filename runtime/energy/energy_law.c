@@ -7,15 +7,10 @@
 
 /* ---- a logarithm of the same bits everywhere ------------------------------------------------------------ */
 
-/* The logarithm's high part and its rest: ln 2 = high + low, and k * high is exact for the exponents of doubles. */
-static const double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
+const double logarithm_series[LOGARITHM_TERMS] = {1.0 / 3.0,  1.0 / 5.0,  1.0 / 7.0,  1.0 / 9.0,
+                                                  1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0,
+                                                  1.0 / 19.0, 1.0 / 21.0, 1.0 / 23.0};
 
-static const double odd_inverses[11] = {1.0 / 3.0,  1.0 / 5.0,  1.0 / 7.0,  1.0 / 9.0,
-                                        1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0,
-                                        1.0 / 19.0, 1.0 / 21.0, 1.0 / 23.0};
-
-/* x = m 2^k with m in [1/sqrt 2, sqrt 2], and ln m = 2 artanh s, s = (m - 1) / (m + 1), whose series in s^2 <= 0.0295
- * ends below 2^-53 of itself after eleven terms. */
 double natural_logarithm(double x) {
     int k = exponent_of(x);
     double m = x * power_of_two(-(k / 2)) * power_of_two(k / 2 - k); /* -k alone may be no exponent */
@@ -23,11 +18,16 @@ double natural_logarithm(double x) {
         m *= 2.0;
         k--;
     }
-    double f = m - 1.0, s = f / (2.0 + f), z = s * s, sum = 0.0;
-    for (int i = 10; i >= 0; i--) sum = z * (odd_inverses[i] + sum);
+    double f = m - 1.0, s = f / (2.0 + f), z = s * s, zz = z * z;
+    double even = logarithm_series[LOGARITHM_TERMS - 1], odd = logarithm_series[LOGARITHM_TERMS - 2];
+    for (int i = LOGARITHM_TERMS - 3; i > 0; i -= 2) {
+        even = logarithm_series[i] + zz * even;
+        odd = logarithm_series[i - 1] + zz * odd;
+    }
+    double sum = z * (logarithm_series[0] + zz * even + z * odd);
     /* ln m = 2 s + 2 s sum = f - s (f - 2 sum): f is exact. */
-    double tail = s * (f - 2.0 * sum) - k * ln2_low;
-    return k * ln2_high + (f - tail);
+    double tail = s * (f - 2.0 * sum) - k * LOGARITHM_2_LOW;
+    return k * LOGARITHM_2_HIGH + (f - tail);
 }
 
 /* ---- laws ---------------------------------------------------------------------------------------------- */

@@ -119,10 +119,24 @@ static double (*hessian_of_term(const energy_sum *s, size_t i))[12] {
     return s->targets->matrix != NULL ? s->memory->hessians[i - s->first] : NULL;
 }
 
+static void evaluate_lanes(const energy_sum *s, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i += LANES) {
+        const size_t place = i - s->first;
+        const energy_outputs out = {s->memory->values + place, s->memory->gaps + place,
+                                    s->targets->gradient != NULL ? s->memory->gradients + place : NULL};
+        s->terms->evaluate_eight(s->terms->of, i, lesser_of(LANES, end - i), &out);
+    }
+}
+
 static void evaluate_share(void *data, uint32_t share) {
     const energy_sum *s = data;
     size_t begin = s->first + (size_t)share * TERMS_PER_SHARE;
     size_t end = lesser_of(begin + TERMS_PER_SHARE, s->end);
+    bool hessians = s->targets->blocks != NULL || s->targets->matrix != NULL;
+    if (!hessians && s->terms->evaluate_eight != NULL) {
+        evaluate_lanes(s, begin, end);
+        return;
+    }
     for (size_t i = begin; i < end; i++) {
         energy_term term = {.project = s->targets->project, .hessian = hessian_of_term(s, i)};
         if (s->targets->gradient != NULL) term.gradient = s->memory->gradients[i - s->first];
@@ -159,11 +173,12 @@ static void add_term(const energy_sum *s, size_t i, int r) {
 /* Eight neighbours in memory have one task, which adds to them in the order of terms. */
 static void add_share(void *data, uint32_t task) {
     const energy_sum *s = data;
+    const bool alone = s->task_count == 1;
     for (size_t i = s->first; i < s->end; i++) {
         const uint32_t *v = energy_term_vertices(s->terms, i);
         int size = energy_term_size(s->terms, i);
         for (int r = 0; r < size; r++) {
-            if (v[r] / 8 % s->task_count == task) add_term(s, i, r);
+            if (alone || v[r] / 8 % s->task_count == task) add_term(s, i, r);
         }
     }
 }

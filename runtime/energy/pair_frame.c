@@ -44,33 +44,44 @@ static void combine_points(const double *points[4], const double amounts[4], dou
 
 /* ---- directions ---------------------------------------------------------------------------------------- */
 
-/* A slide along a direction this much shorter than its vector, as of two edges that are parallel, is none of its own. */
-static const double least_sine = 1e-13;
-
-static void take_off(double v[3], const double direction[3], double slide[4], const double of_direction[4]) {
-    double along = vec3_dot(v, direction);
-    vec3_add_scaled(v, -along, direction, v);
-    for (int i = 0; i < 4; i++) slide[i] -= along * of_direction[i];
+/* Takes off v what it has along the first `count` slides, whose tangents are orthogonal, and changes its weights with it. */
+static void take_off(double v[3], double weights[4], const pair_frame *f, int count,
+                     const double inverses[2]) {
+    double along[2];
+    for (int j = 0; j < count; j++) along[j] = vec3_dot(v, f->tangents[j]) * inverses[j];
+    for (int j = 0; j < count; j++) {
+        vec3_add_scaled(v, -along[j], f->tangents[j], v);
+        for (int i = 0; i < 4; i++) weights[i] -= along[j] * f->slides[j][i];
+    }
 }
 
-/* Makes the slides those by a unit of length along orthogonal tangents; one along no direction goes away. */
-static void straighten_slides(const double *points[4], pair_frame *f) {
+/* Makes the tangents orthogonal, of any length, and gives the inverses of their squared lengths; a slide along no direction goes
+ * away. */
+static void straighten_slides(const double *points[4], pair_frame *f, double inverses[2], double lengths[2]) {
     int count = 0;
     for (int j = 0; j < f->slide_count; j++) {
         double along[3], slide[4];
         memcpy(slide, f->slides[j], sizeof slide);
         combine_points(points, slide, along);
-        double whole = sqrt(vec3_dot(along, along));
-        for (int again = 0; again < 2 && count > 0; again++)
-            take_off(along, f->tangents[0], slide, f->slides[0]);
-        double length = sqrt(vec3_dot(along, along));
-        if (length == 0.0 || length <= least_sine * whole) continue;
-        double inverse = 1.0 / length;
-        for (int k = 0; k < 3; k++) f->tangents[count][k] = along[k] * inverse;
-        for (int i = 0; i < 4; i++) f->slides[count][i] = slide[i] * inverse;
-        count++;
+        double whole = vec3_dot(along, along);
+        for (int again = 0; again < 2; again++) take_off(along, slide, f, count, inverses);
+        double squared = vec3_dot(along, along);
+        if (squared <= LEAST_SQUARED_SINE * whole) continue;
+        memcpy(f->tangents[count], along, sizeof along);
+        memcpy(f->slides[count], slide, sizeof slide);
+        inverses[count] = 1.0 / squared;
+        lengths[count++] = sqrt(squared);
     }
     f->slide_count = count;
+}
+
+/* Makes the slides those by a unit of length. */
+static void shorten_slides(pair_frame *f, const double lengths[2]) {
+    for (int j = 0; j < f->slide_count; j++) {
+        double inverse = 1.0 / lengths[j];
+        for (int k = 0; k < 3; k++) f->tangents[j][k] *= inverse;
+        for (int i = 0; i < 4; i++) f->slides[j][i] *= inverse;
+    }
 }
 
 static void normalize_vector(double v[3], double length) {
@@ -120,7 +131,7 @@ static void normal_of_touch(const cscd_proximity *item, pair_frame *f) {
 
 void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f) {
     const double *points[4];
-    double apart[3];
+    double apart[3], inverses[2], lengths[2];
     for (int i = 0; i < 4; i++) points[i] = x + (size_t)item->vertices[i] * 3;
     f->straight = false;
     memcpy(f->weights, item->weights, sizeof f->weights);
@@ -129,18 +140,19 @@ void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f)
         frame_of_half_space(item, points, f);
         return;
     }
-    straighten_slides(points, f);
+    straighten_slides(points, f, inverses, lengths);
     combine_points(points, f->weights, apart);
-    for (int again = 0; again < 2; again++) { /* the second time for what rounding has left */
-        for (int j = 0; j < f->slide_count; j++) take_off(apart, f->tangents[j], f->weights, f->slides[j]);
-    }
+    for (int again = 0; again < 2; again++) /* the second time for what rounding has left */
+        take_off(apart, f->weights, f, f->slide_count, inverses);
     if (f->slide_count == 2) {
         vec3_cross(f->tangents[0], f->tangents[1], f->normal);
-        f->distance = vec3_dot(apart, f->normal);
-        double sign = f->distance < 0.0 ? -1.0 : 1.0;
-        f->distance *= sign;
-        for (int k = 0; k < 3; k++) f->normal[k] *= sign;
+        double height = vec3_dot(apart, f->normal), inverse = 1.0 / (lengths[0] * lengths[1]);
+        if (height < 0.0) inverse = -inverse;
+        f->distance = height * inverse;
+        for (int k = 0; k < 3; k++) f->normal[k] *= inverse;
+        shorten_slides(f, lengths);
     } else {
+        shorten_slides(f, lengths);
         f->distance = sqrt(vec3_dot(apart, apart));
         for (int k = 0; k < 3; k++) f->normal[k] = apart[k];
         if (f->distance > 0.0)
