@@ -181,3 +181,50 @@ TEST(what_meets_itself_keeps_its_momentum) {
     for (int k = 0; k < 3; k++) assert_true(fabs(wanted[k] - got[k]) < 1e-12 * SIDE * SIDE);
     free_press(&p);
 }
+
+/* ---- integrators --------------------------------------------------------------------------------------- */
+
+typedef enum integrator { POSITION_BASED, EXPLICIT_EULER, VERLET, INTEGRATOR_COUNT } integrator;
+
+/* The free vertices of one simulation: velocities, or where they were a frame ago, and the end that they wanted. */
+typedef struct fall {
+    double velocity[SIDE * SIDE * 3], before[SIDE * SIDE * 3], wanted[SIDE * SIDE * 3];
+} fall;
+
+static const double dt = 1.0 / 60.0, gravity = -9.81;
+
+/* As docs/solver/first-contact.md says it. */
+static void move_frame(press *p, integrator by, fall *f) {
+    const uint32_t count = p->floor * 3;
+    for (uint32_t i = 0; i < count; i++) {
+        double pull = i % 3 == 2 ? gravity * dt : 0.0;
+        if (by == VERLET) {
+            p->x1[i] = 2.0 * p->x0[i] - f->before[i] + pull * dt;
+        } else {
+            f->velocity[i] += pull;
+            p->x1[i] = p->x0[i] + f->velocity[i] * dt;
+        }
+        f->wanted[i] = p->x1[i];
+        f->before[i] = p->x0[i];
+    }
+    assert_true(go_on(p) == 1.0);
+    for (uint32_t i = 0; i < count; i++) {
+        if (by == POSITION_BASED) f->velocity[i] = (p->x0[i] - f->before[i]) / dt;
+        if (by == EXPLICIT_EULER) f->velocity[i] += (p->x0[i] - f->wanted[i]) / dt;
+    }
+}
+
+TEST(every_integrator_comes_to_rest) {
+    for (int by = 0; by < INTEGRATOR_COUNT; by++) {
+        press p = make_press(0.2, 1.0);
+        fall f = {.velocity = {0.0}};
+        memcpy(f.before, p.x0, sizeof f.before);
+        for (int frame = 0; frame < 60; frame++) move_frame(&p, (integrator)by, &f);
+        for (uint32_t v = 0; v < p.floor; v++) {
+            double height = p.x0[v * 3 + 2] + 0.2;
+            assert_true(height > separation && height < 3.0 * separation);
+            assert_true(fabs(p.x0[v * 3 + 2] - f.before[v * 3 + 2]) < 0.1 * separation);
+        }
+        free_press(&p);
+    }
+}
