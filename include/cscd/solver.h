@@ -250,7 +250,7 @@ CSCD_API cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_
 typedef enum cscd_response {
     CSCD_RESPONSE_FREE,      /* none: it went where it wanted */
     CSCD_RESPONSE_STOPPED,   /* contacts took away what approaches, and friction some of what slides */
-    CSCD_RESPONSE_TRUNCATED, /* planes shortened its motion */
+    CSCD_RESPONSE_TRUNCATED, /* planes shortened its motion, or all wanted half of it */
     CSCD_RESPONSE_HELD,      /* it stayed, because it touches something at x0 */
     CSCD_RESPONSE_COUNT,
     CSCD_RESPONSE_MAX_ENUM = 0x7fffffff
@@ -286,7 +286,7 @@ typedef struct cscd_safe_motion {
     /* The share of its motion that a vertex made, along it, from 0 to 1: the mean, and the least. Those of
      * obstacles, and those that did not want to move, do not count. */
     double mean_share, least_share;
-    double obstacle_share; /* the least by which an obstacle, as a whole, went; mostly 1 */
+    double obstacle_share; /* the least by which an obstacle, or all, went as a whole; mostly 1 */
     /* The pairs that touch at x0, sorted by (kind, a, b), with toi 0. Their vertices stay. */
     const cscd_contact *held;
     size_t held_count;
@@ -298,8 +298,9 @@ typedef struct cscd_safe_motion {
  * its end to `reached`, which may be x1 or x0 itself, or NULL. A contact stops the approach of its points by
  * impulses, which keep momentum, and Coulomb friction slows what slides. The features of pairs that then come
  * into contact elsewhere stop before a plane between them. What this leaves after some rounds is shortened to
- * such planes, as in cscd_detector_truncate. Obstacles go where they want unless something is caught between
- * them, and then stop as a whole. The vertices of a seam are shifted by the same.
+ * such planes, as in cscd_detector_truncate; where that comes to no end, all wants half of its motion, and so
+ * on. Obstacles go where they want unless something is caught between them, and then stop as a whole. The
+ * vertices of a seam are shifted by the same.
  *
  * The certificate is for the positions as stored: nothing touches on the motion but what is `held`. As in
  * cscd_detector_max_step no pair sinks below its floor (docs/solver/guarantees.md). A velocity follows from

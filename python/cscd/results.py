@@ -84,7 +84,7 @@ class SafeMotion(NamedTuple):
     mean_share, least_share : float
         The share of its motion that a vertex made, along it, from 0 to 1.
     obstacle_share : float
-        The least by which an obstacle, as a whole, went; mostly 1.
+        The least by which an obstacle, or all, went as a whole; mostly 1.
     rounds, truncations : int
         How many searches it took (1 if ``x1`` was safe), and after how many of them planes shortened motions.
     pushed : int

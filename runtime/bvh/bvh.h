@@ -149,10 +149,11 @@ typedef struct bvh {
     uint32_t missing_begin, missing_end; /* the triangles of missing trees are some of these */
     bvh_tree *trees;
     bvh_leaf *leaves;
-    lane_flags *leaf_flags;             /* of triangles */
-    lane_flags *flags_before;           /* the leaf_flags before the last bvh_mark_newly_kept */
-    uint64_t *leaf_self_pairs;          /* like self_pairs of a level, but of triangles; NULL: all */
-    uint8_t *leaf_inactive;             /* like inactive_lanes of a level, but of triangles */
+    lane_flags *leaf_flags;    /* of triangles */
+    lane_flags *flags_before;  /* the leaf_flags before the last bvh_mark_newly_kept */
+    uint64_t *leaf_self_pairs; /* like self_pairs of a level, but of triangles; NULL: all */
+    uint8_t *leaf_inactive;    /* like inactive_lanes of a level, but of triangles */
+    bool has_inactive;         /* the marks of inactive triangles count; their memory may outlive them */
     uint32_t *block_trees, *leaf_trees; /* the tree of each block of level 0, and of each leaf */
     uint32_t *record_vertices;          /* the mesh's vertex of a record */
     float *record_weights;              /* per record, its weight in the detector point */

@@ -154,11 +154,12 @@ static bool allocate_marks(bvh *hierarchy) {
 }
 
 bool bvh_set_active(bvh *hierarchy, const bool *active) {
-    if (active == NULL) {
-        drop_marks(hierarchy);
-        return true;
+    hierarchy->has_inactive = active != NULL;
+    if (active == NULL) return true;
+    if (hierarchy->leaf_inactive == NULL && !allocate_marks(hierarchy)) {
+        hierarchy->has_inactive = false;
+        return false;
     }
-    if (hierarchy->leaf_inactive == NULL && !allocate_marks(hierarchy)) return false;
     for (uint32_t i = 0; i < hierarchy->leaf_count; i++)
         hierarchy->leaf_inactive[i] = inactive_triangles(hierarchy, i, active);
     for (int level = 0; level < hierarchy->level_count; level++) {
@@ -169,7 +170,7 @@ bool bvh_set_active(bvh *hierarchy, const bool *active) {
 }
 
 const char *bvh_check_active(const bvh *hierarchy, const bool *active) {
-    if ((hierarchy->leaf_inactive != NULL) != (active != NULL))
+    if (hierarchy->has_inactive != (active != NULL))
         return "the trees and their detector have different active sets";
     if (active == NULL) return NULL;
     for (uint32_t i = 0; i < hierarchy->leaf_count; i++) {

@@ -81,7 +81,7 @@ static bool spread_shares(traversal *t, size_t wanted) {
 static void begin_pass(traversal *t, const bvh *hierarchy, traversal_pass pass) {
     t->bvh = hierarchy;
     t->pass = pass;
-    t->skips_inactive = hierarchy->leaf_inactive != NULL && pass != TRAVERSAL_UNPROVEN && !t->whole;
+    t->skips_inactive = hierarchy->has_inactive && pass != TRAVERSAL_UNPROVEN && !t->whole;
     t->share_count = 0;
     atomic_store(&t->next_share, 0);
     for (uint32_t i = 0; i < t->worker_count; i++) {

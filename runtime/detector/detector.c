@@ -169,6 +169,7 @@ void detector_free(cscd_detector *d) {
     context_free(context, d->vertex_scratch);
     context_free(context, d->scalars);
     context_free(context, d->response.vertices);
+    active_set_free(context, &d->response.focus);
     context_free(context, d->response.stops);
     context_free(context, d->response.held);
     context_free(context, d->response.divided);

@@ -25,7 +25,8 @@ typedef struct detector_results {
 
 /* Memory of cscd_detector_make_safe. */
 typedef struct response_memory {
-    void *vertices; /* per vertex and object */
+    void *vertices;   /* per vertex and object */
+    active_set focus; /* see detector_focus */
     void *stops, *held, *divided;
     size_t stops_size, held_size, divided_size; /* in bytes */
 } response_memory;
@@ -99,6 +100,10 @@ void detector_take_rules(cscd_detector *d, const pair_rules *rules);
 
 /* Sets longest_list from now on. */
 cscd_status detector_set_longest_list(cscd_detector *d, size_t longest);
+
+/* Looks only for pairs of which one has such a vertex, until detector_unfocus. All vertices are active. */
+cscd_status detector_focus(cscd_detector *d, const uint32_t *vertices, size_t count);
+void detector_unfocus(cscd_detector *d);
 
 /* Returns INVALID_ARGUMENT, and names a vertex that moves and is not active. */
 cscd_status detector_check_still(const cscd_detector *d, const double *x0, const double *x1);

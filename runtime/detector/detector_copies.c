@@ -200,6 +200,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(vertex_scratch);
     EXCHANGE(scalars);
     EXCHANGE(response.vertices);
+    EXCHANGE(response.focus);
     EXCHANGE(results.timings);
     EXCHANGE(results.counters);
 }

@@ -254,6 +254,24 @@ static void drop_vertices(cscd_detector *d) {
     d->config.rules_revision++;
 }
 
+cscd_status detector_focus(cscd_detector *d, const uint32_t *vertices, size_t count) {
+    active_set *focus = &d->response.focus;
+    cscd_status status = active_set_reserve(d->mesh, focus);
+    if (status != CSCD_OK) return status;
+    active_set_fill(d->mesh, vertices, count, focus);
+    if (d->space.bvh.mesh != NULL && !bvh_set_active(&d->space.bvh, focus->triangles))
+        return CSCD_OUT_OF_MEMORY;
+    d->space.active = *focus;
+    d->rebuild.active = focus->triangles;
+    return CSCD_OK;
+}
+
+void detector_unfocus(cscd_detector *d) {
+    if (d->space.bvh.mesh != NULL) bvh_set_active(&d->space.bvh, NULL);
+    d->space.active = (active_set){.vertices = NULL};
+    d->rebuild.active = NULL;
+}
+
 static cscd_status set_active(cscd_detector *d, const uint32_t *vertices, size_t count) {
     cscd_status status = check_vertices(d, vertices, count);
     if (status != CSCD_OK) return status;

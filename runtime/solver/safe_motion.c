@@ -43,11 +43,16 @@ typedef struct safe_work {
     const straight_motion *motion; /* as the caller wants it */
     const cscd_response_options *options;
     contact_response response;
-    double *wanted; /* the end that is still wanted: x1, less what is held */
-    double *shares; /* per object: of its motion, if it is an obstacle */
-    uint8_t *kinds; /* per vertex: cscd_response */
-    double *end;    /* the detector's: the trial end, as it is stored */
+    double *wanted;    /* the end that is still wanted: x1, less what is held */
+    double *shares;    /* per object: of its motion, if it is an obstacle */
+    uint8_t *kinds;    /* per vertex: cscd_response */
+    double *end;       /* the detector's: the trial end, as it is stored */
+    double *searched;  /* the end that was searched last */
+    uint8_t *touching; /* per vertex: it was in contact there */
+    uint32_t *changed; /* a list of vertices */
+    bool any_searched;
     tries tries;
+    bool truncated;       /* what is wanted is the end of the response */
     bool start_looked_at; /* what touches at x0 is held */
     size_t held_count;
     cscd_safe_motion found;
@@ -66,7 +71,14 @@ static cscd_status grow_block(cscd_context *context, void **block, size_t *size,
     return CSCD_OK;
 }
 
-enum { BYTES_PER_VERTEX = 7 * sizeof(double) + sizeof(uint32_t) + sizeof(uint8_t) };
+/* Makes room for so many more elements of a block that has some. */
+static cscd_status grow_list(safe_work *w, void **block, size_t *block_size, size_t count, size_t more,
+                             size_t size) {
+    if (more >= UINT32_MAX - count || more > SIZE_MAX / 2 / size - count) return CSCD_OUT_OF_MEMORY;
+    return grow_block(w->detector->context, block, block_size, (count + more) * size, count * size);
+}
+
+enum { BYTES_PER_VERTEX = 10 * sizeof(double) + 2 * sizeof(uint32_t) + 2 * sizeof(uint8_t) };
 
 static cscd_status reserve_work(safe_work *w) {
     cscd_detector *d = w->detector;
@@ -82,9 +94,12 @@ static cscd_status reserve_work(safe_work *w) {
     w->wanted = doubles;
     r->shift = doubles + 3 * vertices;
     r->mobilities = doubles + 6 * vertices;
-    w->shares = doubles + 7 * vertices;
+    w->searched = doubles + 7 * vertices;
+    w->shares = doubles + 10 * vertices;
     r->shifted = (void *)(w->shares + objects);
-    w->kinds = (void *)(r->shifted + vertices);
+    w->changed = r->shifted + vertices;
+    w->kinds = (void *)(w->changed + vertices);
+    w->touching = w->kinds + vertices;
     w->end = d->reached;
     return CSCD_OK;
 }
@@ -143,6 +158,17 @@ static cscd_scalar scalar_of(const safe_work *w, uint32_t object) {
     return w->motion->scalars != NULL ? w->motion->scalars[object] : CSCD_SCALAR_DOUBLE;
 }
 
+/* Makes the share of its motion what an object wants. */
+static void want_share(const safe_work *w, uint32_t object) {
+    const cscd_object *of = &w->detector->mesh->objects[object];
+    const double share = w->shares[object], *x0 = w->motion->x0, *x1 = w->motion->x1;
+    for (size_t i = 3 * (size_t)of->first_vertex; i < 3 * ((size_t)of->first_vertex + of->vertex_count);
+         i++) {
+        double x = place_coordinate(x0[i] + share * (x1[i] - x0[i]), scalar_of(w, object));
+        w->wanted[i] = share == 1.0 ? x1[i] : share == 0.0 ? x0[i] : x;
+    }
+}
+
 /* Writes the trial end: what is wanted with its shift, as it is stored. */
 static void place_end(const safe_work *w) {
     const cscd_mesh *mesh = w->detector->mesh;
@@ -154,27 +180,6 @@ static void place_end(const safe_work *w) {
                 w->end[3 * v + k] = place_coordinate(w->wanted[3 * v + k] + shift[k], scalar_of(w, o));
         }
     }
-}
-
-static void begin_work(safe_work *w) {
-    const cscd_mesh *mesh = w->detector->mesh;
-    size_t coordinates = (size_t)mesh->vertex_count * 3;
-    contact_response *r = &w->response;
-    r->mesh = mesh;
-    r->names = w->detector->config.exclusions.names;
-    r->x0 = w->motion->x0;
-    r->wanted = w->wanted;
-    r->friction = w->options->friction;
-    r->rounding = motion_rounding(w->motion);
-    w->rules = config_search_begin(&w->detector->config, &w->detector->space, r->x0, r->x0).interval;
-    r->rules = &w->rules;
-    memcpy(w->wanted, w->motion->x1, coordinates * sizeof(double));
-    memset(r->shift, 0, coordinates * sizeof(double));
-    memset(w->kinds, CSCD_RESPONSE_FREE, mesh->vertex_count);
-    r->clock = 1;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) r->shifted[v] = 1;
-    for (uint32_t o = 0; o < mesh->object_count; o++) w->shares[o] = 1.0;
-    weigh_vertices(w);
 }
 
 /* ---- what touches at the start ------------------------------------------------------------------------- */
@@ -189,39 +194,46 @@ static void hold_vertex(const safe_work *w, uint32_t vertex) {
     r->mobilities[name] = 0.0;
 }
 
-/* Vertices stay with those of their seam, and with their obstacle. */
-static void hold_with_marked(const safe_work *w) {
+static bool has_held_vertex(const safe_work *w, const cscd_object *of) {
+    return memchr(w->kinds + of->first_vertex, CSCD_RESPONSE_HELD, of->vertex_count) != NULL;
+}
+
+/* Vertices of the pairs that touch at x0 stay there, with those of their seam, and with their obstacle. */
+static void hold_touching(const safe_work *w) {
     const cscd_mesh *mesh = w->detector->mesh;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        if (w->kinds[v] != CSCD_RESPONSE_HELD) continue;
-        w->kinds[response_name(&w->response, v)] = CSCD_RESPONSE_HELD;
-        uint32_t object = cscd_mesh_vertex_object(mesh, v);
-        if (is_given(mesh, object)) w->shares[object] = 0.0;
+    const cscd_contact *touching = w->detector->response.held;
+    for (size_t i = 0; i < w->held_count; i++) {
+        for (int j = 0; j < 4; j++) w->kinds[touching[i].vertices[j]] = CSCD_RESPONSE_HELD;
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        bool held = w->kinds[response_name(&w->response, v)] == CSCD_RESPONSE_HELD;
-        if (held || w->shares[cscd_mesh_vertex_object(mesh, v)] == 0.0) hold_vertex(w, v);
+        if (w->kinds[v] == CSCD_RESPONSE_HELD) w->kinds[response_name(&w->response, v)] = CSCD_RESPONSE_HELD;
+    }
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        const cscd_object *of = &mesh->objects[o];
+        if (!is_given(mesh, o) || !has_held_vertex(w, of)) continue;
+        memset(w->kinds + of->first_vertex, CSCD_RESPONSE_HELD, of->vertex_count);
+        w->shares[o] = 0.0;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (w->kinds[v] == CSCD_RESPONSE_HELD ||
+            w->kinds[response_name(&w->response, v)] == CSCD_RESPONSE_HELD)
+            hold_vertex(w, v);
     }
 }
 
-/* Finds the pairs that touch at x0, and holds their vertices there. */
-static cscd_status hold_touching(safe_work *w) {
+/* Finds the pairs that touch at x0, and holds their vertices. */
+static cscd_status look_at_start(safe_work *w) {
     cscd_detector *d = w->detector;
     cscd_contacts touching;
     cscd_status status =
         tries_find(&w->tries, w->motion->x0, w->motion->x0, CSCD_MODE_ALL, STEP_BELOW_FLOOR, &touching);
     w->start_looked_at = true;
     if (status != CSCD_OK || touching.count == 0) return status;
-    if (touching.count > SIZE_MAX / 2 / sizeof(cscd_contact)) return CSCD_OUT_OF_MEMORY;
-    size_t size = touching.count * sizeof(cscd_contact);
-    status = grow_block(d->context, &d->response.held, &d->response.held_size, size, 0);
+    status = grow_list(w, &d->response.held, &d->response.held_size, 0, touching.count, sizeof(cscd_contact));
     if (status != CSCD_OK) return status;
-    memcpy(d->response.held, touching.items, size);
+    memcpy(d->response.held, touching.items, touching.count * sizeof(cscd_contact));
     w->held_count = touching.count;
-    for (size_t i = 0; i < touching.count; i++) {
-        for (int j = 0; j < 4; j++) w->kinds[touching.items[i].vertices[j]] = CSCD_RESPONSE_HELD;
-    }
-    hold_with_marked(w);
+    hold_touching(w);
     return CSCD_OK;
 }
 
@@ -232,18 +244,78 @@ static bool is_held(const safe_work *w, const cscd_contact *c) {
     return true;
 }
 
+/* Begins a try at this share of the motion. */
+static void begin_work(safe_work *w, double share) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    size_t coordinates = (size_t)mesh->vertex_count * 3;
+    contact_response *r = &w->response;
+    r->mesh = mesh;
+    r->names = w->detector->config.exclusions.names;
+    r->x0 = w->motion->x0;
+    r->wanted = w->wanted;
+    r->friction = w->options->friction;
+    r->rounding = motion_rounding(w->motion);
+    w->rules = config_search_begin(&w->detector->config, &w->detector->space, r->x0, r->x0).interval;
+    r->rules = &w->rules;
+    r->stop_count = 0;
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        w->shares[o] = share;
+        want_share(w, o);
+    }
+    memset(r->shift, 0, coordinates * sizeof(double));
+    memset(w->kinds, CSCD_RESPONSE_FREE, mesh->vertex_count);
+    r->clock = 1;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) r->shifted[v] = 1;
+    weigh_vertices(w);
+    w->truncated = false;
+    hold_touching(w);
+}
+
 /* ---- rounds -------------------------------------------------------------------------------------------- */
 
 /* The response ends after this many rounds, or after fewer when the contacts have not become fewer for a while. */
 enum { ROUNDS = 32, PATIENCE = 6 };
 
+static bool differ_in_place(const double *a, const double *b, size_t vertex) {
+    for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
+        if (a[i] != b[i]) return true;
+    return false;
+}
+
+/* Lists the vertices whose end has changed since the last search, or that were in contact then. */
+static uint32_t list_changed(const safe_work *w) {
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < w->detector->mesh->vertex_count; v++)
+        if (w->touching[v] || differ_in_place(w->end, w->searched, v)) w->changed[count++] = v;
+    return count;
+}
+
+/* The contacts of a pair depend on the ends of its vertices alone. Where nothing is culled, only what has changed since the last
+ * search needs another one, unless that is most of all. */
+static cscd_status search_changed(safe_work *w, step_rule rule, cscd_contacts *found) {
+    cscd_detector *d = w->detector;
+    const uint32_t vertices = d->mesh->vertex_count;
+    const bool alone = w->any_searched && !config_culls(&d->config) && d->space.active.vertices == NULL;
+    const uint32_t count = alone ? list_changed(w) : vertices;
+    const bool focused = count < vertices / 2;
+    cscd_status status = focused ? detector_focus(d, w->changed, count) : CSCD_OK;
+    if (status == CSCD_OK) status = tries_find(&w->tries, w->motion->x0, w->end, CSCD_MODE_ALL, rule, found);
+    if (focused) detector_unfocus(d);
+    if (status != CSCD_OK) return status;
+    w->any_searched = true;
+    memcpy(w->searched, w->end, vertices * sizeof(double[3]));
+    memset(w->touching, 0, vertices);
+    for (size_t i = 0; i < 4 * found->count; i++) w->touching[found->items[i / 4].vertices[i % 4]] = 1;
+    return CSCD_OK;
+}
+
 /* Finds the contacts of the motion to the trial end but those that are held. */
 static cscd_status find_contacts(safe_work *w, step_rule rule, cscd_contacts *found) {
     cscd_detector *d = w->detector;
-    cscd_status status = tries_find(&w->tries, w->motion->x0, w->end, CSCD_MODE_ALL, rule, found);
+    cscd_status status = search_changed(w, rule, found);
     if (status != CSCD_OK || found->count == 0) return status;
     if (rule == STEP_BELOW_FLOOR && found->items[0].toi == 0.0 && !w->start_looked_at) {
-        status = hold_touching(w);
+        status = look_at_start(w);
         return status == CSCD_OK ? find_contacts(w, rule, found) : status;
     }
     cscd_contact *items = d->results.contacts.items;
@@ -253,13 +325,6 @@ static cscd_status find_contacts(safe_work *w, step_rule rule, cscd_contacts *fo
     }
     found->count = count;
     return status;
-}
-
-/* Makes room for so many more elements of a block that has some. */
-static cscd_status grow_list(safe_work *w, void **block, size_t *block_size, size_t count, size_t more,
-                             size_t size) {
-    if (more >= UINT32_MAX - count || more > SIZE_MAX / 2 / size - count) return CSCD_OUT_OF_MEMORY;
-    return grow_block(w->detector->context, block, block_size, (count + more) * size, count * size);
 }
 
 /* Responds to contacts: to the first ones where they are, and later between their features, so that none of them comes back
@@ -302,12 +367,6 @@ static cscd_status respond_in_rounds(safe_work *w, bool *free) {
 
 /* ---- truncation ---------------------------------------------------------------------------------------- */
 
-static bool differ_in_place(const double *a, const double *b, size_t vertex) {
-    for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
-        if (a[i] != b[i]) return true;
-    return false;
-}
-
 /* Obstacles move as a whole, a little less than the least share of any of their vertices. */
 static const double share_of_least = 1.0 - 0x1p-30;
 
@@ -330,31 +389,21 @@ static bool lower_obstacle_shares(safe_work *w) {
     return any;
 }
 
-static void move_obstacles(const safe_work *w) {
-    const cscd_mesh *mesh = w->detector->mesh;
-    for (uint32_t o = 0; o < mesh->object_count; o++) {
-        size_t begin = (size_t)mesh->objects[o].first_vertex * 3;
-        size_t end = begin + (size_t)mesh->objects[o].vertex_count * 3;
-        for (size_t i = begin; w->shares[o] < 1.0 && i < end; i++) {
-            double x0 = w->motion->x0[i], way = w->shares[o] * (w->motion->x1[i] - x0);
-            w->wanted[i] = w->shares[o] > 0.0 ? place_coordinate(x0 + way, scalar_of(w, o)) : x0;
-        }
-    }
-}
-
 enum { OBSTACLE_ROUNDS = 3 };
 
 /* Shortens motions to planes between the pairs. Obstacles that cannot get where they want go back as a whole, at last to where
  * they were. */
-static cscd_status divide_pairs(safe_work *w, const cscd_proximities *pairs) {
+static cscd_status divide_pairs(safe_work *w, const cscd_proximities *pairs, double share) {
     cscd_detector *d = w->detector;
     const wanted_motion motion = {w->motion->x0, w->wanted, w->motion->scalars};
     for (int round = 0;; round++) {
         cscd_status status = truncation_divide(d, &motion, pairs, w->end);
         if (status != CSCD_OK || !lower_obstacle_shares(w)) return status;
-        for (uint32_t o = 0; round >= OBSTACLE_ROUNDS && o < d->mesh->object_count; o++)
-            if (w->shares[o] < 1.0) w->shares[o] = 0.0;
-        move_obstacles(w);
+        for (uint32_t o = 0; o < d->mesh->object_count; o++) {
+            if (!is_given(d->mesh, o) || w->shares[o] == share) continue;
+            if (round >= OBSTACLE_ROUNDS) w->shares[o] = 0.0;
+            want_share(w, o);
+        }
     }
 }
 
@@ -375,50 +424,38 @@ static cscd_status add_pairs(safe_work *w, const cscd_contacts *found, cscd_prox
     return CSCD_OK;
 }
 
-/* All go the same share of what is left of their ways. */
-static void shorten_all(const safe_work *w, double share) {
-    const cscd_mesh *mesh = w->detector->mesh;
-    for (uint32_t o = 0; o < mesh->object_count; o++) {
-        if (is_given(mesh, o)) w->shares[o] *= share;
-        size_t begin = (size_t)mesh->objects[o].first_vertex * 3;
-        size_t end = begin + (size_t)mesh->objects[o].vertex_count * 3;
-        for (size_t i = begin; i < end; i++) {
-            double x0 = w->motion->x0[i], way = share * (w->end[i] - x0);
-            w->end[i] = share > 0.0 ? place_coordinate(x0 + way, scalar_of(w, o)) : x0;
-        }
-    }
-}
+enum { PLANE_ROUNDS = 16, MORE = 32 };
 
-/* Planes shorten what is in contact, mostly in a few rounds. The last resort is a certified step, and at last nothing moves. */
-enum { PLANE_ROUNDS = 20, STEP_ROUNDS = 4 };
-
-/* Shortens what is still in contact, and what that brings into contact. What is wanted is the end of the response from here on. */
-static cscd_status truncate_rest(safe_work *w) {
+/* Shortens what is still in contact, and what that brings into contact, until nothing is, or planes bring about more than they end. What
+ * is wanted is the end of the response from here on. */
+static cscd_status truncate_rest(safe_work *w, double share, bool *free) {
     cscd_proximities pairs = {.count = 0};
     cscd_contacts found;
+    size_t first = 0;
     memcpy(w->wanted, w->end, w->detector->mesh->vertex_count * sizeof(double[3]));
-    for (uint32_t round = 0;; round++) {
+    w->truncated = true;
+    for (uint32_t round = 0; round < PLANE_ROUNDS; round++) {
         cscd_status status = find_contacts(w, STEP_BELOW_FLOOR, &found);
         w->found.rounds++;
-        if (status != CSCD_OK || found.count == 0 || round > PLANE_ROUNDS + STEP_ROUNDS) return status;
+        *free = status == CSCD_OK && found.count == 0;
+        if (status != CSCD_OK || *free) return status;
+        if (round == 0) first = found.count;
+        if (found.count / 2 > first + MORE) break;
         w->found.truncations++;
-        if (round < PLANE_ROUNDS) {
-            status = add_pairs(w, &found, &pairs);
-            if (status == CSCD_OK) status = divide_pairs(w, &pairs);
-            if (status != CSCD_OK) return status;
-        } else {
-            const double step = w->detector->config.options.step_factor * found.items[0].toi;
-            shorten_all(w, round < PLANE_ROUNDS + STEP_ROUNDS ? step : 0.0);
-        }
+        status = add_pairs(w, &found, &pairs);
+        if (status == CSCD_OK) status = divide_pairs(w, &pairs, share);
+        if (status != CSCD_OK) return status;
     }
+    return CSCD_OK;
 }
 
 /* ---- the answer ---------------------------------------------------------------------------------------- */
 
 static uint8_t kind_of(const safe_work *w, uint32_t vertex) {
     if (w->kinds[vertex] == CSCD_RESPONSE_HELD) return CSCD_RESPONSE_HELD;
-    if (w->found.truncations > 0 && (differ_in_place(w->end, w->wanted, vertex) ||
-                                     w->shares[cscd_mesh_vertex_object(w->detector->mesh, vertex)] < 1.0))
+    const bool waits = w->shares[cscd_mesh_vertex_object(w->detector->mesh, vertex)] < 1.0;
+    if ((waits && differ_in_place(w->end, w->motion->x1, vertex)) ||
+        (w->truncated && differ_in_place(w->end, w->wanted, vertex)))
         return CSCD_RESPONSE_TRUNCATED;
     const double *shift = w->response.shift + 3 * (size_t)response_name(&w->response, vertex);
     return vec3_largest(shift) > 0.0 ? CSCD_RESPONSE_STOPPED : CSCD_RESPONSE_FREE;
@@ -464,12 +501,21 @@ static void sum_up_motion(safe_work *w) {
 
 /* ---- cscd_detector_make_safe --------------------------------------------------------------------------- */
 
+/* Where so little of a motion cannot be made safe, nothing moves. */
+static const double least_try = 0x1p-6;
+
+/* Tries the motion, and as long as contacts are left, half of it. */
 static cscd_status find_safe_motion(safe_work *w) {
     cscd_detector *d = w->detector;
+    cscd_status status = CSCD_OK;
     bool free = false;
-    begin_work(w);
-    cscd_status status = respond_in_rounds(w, &free);
-    if (status == CSCD_OK && !free) status = truncate_rest(w);
+    for (double share = 1.0; status == CSCD_OK && !free; share *= 0.5) {
+        if (share < least_try) share = 0.0;
+        begin_work(w, share);
+        status = respond_in_rounds(w, &free);
+        if (status == CSCD_OK && !free) status = truncate_rest(w, share, &free);
+        if (share == 0.0) break;
+    }
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return status;
     step_take(d, w->end);

@@ -353,11 +353,11 @@ static cscd_safe_motion drop_layers(uint32_t count, double spacing, double way) 
     return out;
 }
 
-/* Each layer is in the way of the next one only when it has been truncated, so that planes do not come to an end, and all go the same
- * share at last. */
-TEST(what_planes_do_not_end_goes_a_certified_step) {
+/* Each layer is in the way of the next one only when it has been truncated, so that planes do not come to an end, and all go half of
+ * their ways. */
+TEST(what_planes_do_not_end_goes_half_of_its_way) {
     cscd_safe_motion out = drop_layers(30, 0.0105, 0.0012);
-    assert_true(out.truncations > 20 && out.least_share > 0.1 && out.mean_share < 0.9);
+    assert_true(out.truncations > 15 && out.least_share > 0.4 && out.mean_share < 0.6);
     assert_int_equal(out.response_counts[CSCD_RESPONSE_TRUNCATED], 90);
 }
 
