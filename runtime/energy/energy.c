@@ -108,15 +108,17 @@ static cscd_status take_options(cscd_context *context, const cscd_energy_options
     return status == CSCD_OK ? check_options(context, out) : status;
 }
 
-/* The weights of a's vertices are from 0 to 1, those of b's from -1 to 0, and they add up to 0, up to rounding. Every item is looked at
- * in every call, so there is no branch here. */
+/* The weights of a's vertices are from 0 to 1, those of b's from -1 to 0, and they add up to 0, up to rounding; those that the kind
+ * does not have are 0. Every item is looked at in every call, and kinds come in any order, so nothing here is a branch. */
 static bool weights_fit(const cscd_proximity *p) {
-    const bool edge = (p->kind == CSCD_CONTACT_EE) | (p->kind == CSCD_CONTACT_EV);
-    const double first = p->weights[0], second = edge ? p->weights[1] : -p->weights[1];
+    static const double of_edge[] = {
+        [CSCD_CONTACT_EE] = 1.0, [CSCD_CONTACT_EV] = 1.0, [CSCD_CONTACT_VH] = 0.0};
+    const int size = energy_vertices_of(p->kind);
+    const double in_a = of_edge[p->kind], first = p->weights[0], second = (2.0 * in_a - 1.0) * p->weights[1];
     const double third = -p->weights[2], last = -p->weights[3];
-    const double a = first + (edge ? second : 0.0), b = (edge ? 0.0 : second) + third + last;
+    const double a = first + in_a * second, b = (1.0 - in_a) * second + third + last;
     return (first >= 0.0) & (second >= 0.0) & (third >= 0.0) & (last >= 0.0) & (fabs(a - 1.0) <= 1e-9) &
-           (fabs(b - 1.0) <= 1e-9);
+           (fabs(b - 1.0) <= 1e-9) & ((third == 0.0) | (size > 2)) & ((last == 0.0) | (size > 3));
 }
 
 static const char *fault_of_item(const cscd_mesh *mesh, const cscd_proximity *p) {
@@ -159,13 +161,13 @@ static void evaluate_near(const void *of, size_t i, energy_term *term) {
 }
 
 /* Of pairs whose points are in one place a kernel does not know the normal. */
-static void evaluate_eight_near(const void *of, size_t first, size_t count, const energy_outputs *out) {
+static void evaluate_near_batch(const void *of, size_t first, size_t count, const energy_outputs *out) {
     const near_terms *n = of;
     if (out->gradients == NULL) {
         n->kernels->values(n, first, count, out);
         return;
     }
-    uint32_t left = n->kernels->gradients(n, first, count, out);
+    uint64_t left = n->kernels->gradients(n, first, count, out);
     for (size_t i = 0; left != 0 && i < count; i++) {
         energy_term term = {.gradient = out->gradients[i]};
         if ((left >> i & 1) != 0) evaluate_near(of, first + i, &term);
@@ -173,7 +175,7 @@ static void evaluate_eight_near(const void *of, size_t first, size_t count, cons
 }
 
 static energy_terms terms_of_items(const near_terms *near, size_t count) {
-    return (energy_terms){evaluate_near,      evaluate_eight_near, near, count, near->items->vertices,
+    return (energy_terms){evaluate_near,      evaluate_near_batch, near, count, near->items->vertices,
                           &near->items->kind, sizeof *near->items};
 }
 

@@ -54,13 +54,17 @@ void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *ou
 
 /* The number of vertices that an item has, one after the other from its first; the others repeat an earlier one. */
 static inline int energy_vertices_of(cscd_contact_kind kind) {
-    if (kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_VH) return 2;
-    return kind == CSCD_CONTACT_EV ? 3 : 4;
+    static const uint8_t counts[] = {[CSCD_CONTACT_VF] = 4,
+                                     [CSCD_CONTACT_EE] = 4,
+                                     [CSCD_CONTACT_VV] = 2,
+                                     [CSCD_CONTACT_EV] = 3,
+                                     [CSCD_CONTACT_VH] = 2};
+    return counts[kind];
 }
 
-/* Asks for an item a page later, which processors do not foresee; behind the last one there may be no memory, which does no harm. */
+/* Asks for an item two pages later, which processors do not foresee; behind the last one there may be no memory, which does no harm. */
 static inline void energy_item_prefetch(const cscd_proximity *item) {
-    const uintptr_t later = (uintptr_t)item + 4096;
+    const uintptr_t later = (uintptr_t)item + 8192;
     for (uintptr_t line = 0; line < sizeof *item; line += 64)
         __builtin_prefetch((const void *)(later + line));
 }
@@ -89,22 +93,24 @@ void energy_pair_evaluate(const cscd_energy_options *options, const cscd_proximi
 double energy_pair_force(const cscd_energy_options *options, const cscd_proximity *item, const double *x,
                          pair_frame *frame);
 
-/* ---- pairs, eight at a time ------------------------------------------------------------------------------ */
+/* ---- pairs, many at a time ------------------------------------------------------------------------------- */
+
+enum { ENERGY_BATCH = 64 };
 
 typedef struct near_terms near_terms;
 
-/* Where values and derivatives of terms go; values and gaps have room for LANES. */
+/* Where values and derivatives of terms go; values and gaps have room for a batch. */
 typedef struct energy_outputs {
     double *values, *gaps;
     double (*gradients)[4][3]; /* NULL: not wanted */
 } energy_outputs;
 
-/* These evaluate `count` items, LANES at most, as energy_pair_evaluate, to the same bits. */
+/* These evaluate `count` items, a batch at most, as energy_pair_evaluate, to the same bits. */
 typedef struct energy_kernels {
-    uint32_t (*values)(const near_terms *near, size_t first, size_t count, const energy_outputs *out);
+    uint64_t (*values)(const near_terms *near, size_t first, size_t count, const energy_outputs *out);
 
-    /* Returns a set of lanes whose gradients are not found: of pairs whose points are in one place. */
-    uint32_t (*gradients)(const near_terms *near, size_t first, size_t count, const energy_outputs *out);
+    /* Returns a set of items whose gradients are not found: of pairs whose points are in one place. */
+    uint64_t (*gradients)(const near_terms *near, size_t first, size_t count, const energy_outputs *out);
 } energy_kernels;
 
 DECLARE_KERNELS(energy_kernels);
@@ -150,8 +156,8 @@ int diagonal_and_square_negative(const diagonal_and_square *m, double values[2],
 /* The terms of a sum. */
 typedef struct energy_terms {
     void (*evaluate)(const void *of, size_t i, energy_term *term);
-    /* Evaluates up to LANES terms without Hessians; NULL: as each by itself. */
-    void (*evaluate_eight)(const void *of, size_t first, size_t count, const energy_outputs *out);
+    /* Evaluates up to a batch of terms without Hessians; NULL: as each by itself. */
+    void (*evaluate_batch)(const void *of, size_t first, size_t count, const energy_outputs *out);
     const void *of;
     size_t count;
     /* Where the vertices of term 0 are, how many bytes later those of the next one, and how many of four each has. */

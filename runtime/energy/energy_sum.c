@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* The number of terms that one task evaluates, and the shares of a thread in a round. */
-enum { TERMS_PER_SHARE = 64, SHARES_PER_THREAD = 4, LEAST_ROUND = 512, LARGEST_ROUND = 16384 };
+enum { TERMS_PER_SHARE = ENERGY_BATCH, SHARES_PER_THREAD = 4, LEAST_ROUND = 512, LARGEST_ROUND = 16384 };
 
 /* A place that a pattern does not have. */
 #define NO_SLOT UINT32_MAX
@@ -119,22 +119,16 @@ static double (*hessian_of_term(const energy_sum *s, size_t i))[12] {
     return s->targets->matrix != NULL ? s->memory->hessians[i - s->first] : NULL;
 }
 
-static void evaluate_lanes(const energy_sum *s, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; i += LANES) {
-        const size_t place = i - s->first;
-        const energy_outputs out = {s->memory->values + place, s->memory->gaps + place,
-                                    s->targets->gradient != NULL ? s->memory->gradients + place : NULL};
-        s->terms->evaluate_eight(s->terms->of, i, lesser_of(LANES, end - i), &out);
-    }
-}
-
 static void evaluate_share(void *data, uint32_t share) {
     const energy_sum *s = data;
     size_t begin = s->first + (size_t)share * TERMS_PER_SHARE;
     size_t end = lesser_of(begin + TERMS_PER_SHARE, s->end);
     bool hessians = s->targets->blocks != NULL || s->targets->matrix != NULL;
-    if (!hessians && s->terms->evaluate_eight != NULL) {
-        evaluate_lanes(s, begin, end);
+    if (!hessians && s->terms->evaluate_batch != NULL) {
+        const size_t place = begin - s->first;
+        const energy_outputs out = {s->memory->values + place, s->memory->gaps + place,
+                                    s->targets->gradient != NULL ? s->memory->gradients + place : NULL};
+        s->terms->evaluate_batch(s->terms->of, begin, end - begin, &out);
         return;
     }
     for (size_t i = begin; i < end; i++) {
@@ -157,28 +151,29 @@ static void add_block(const energy_sum *s, uint32_t row, uint32_t slot, double (
     }
 }
 
-static void add_term(const energy_sum *s, size_t i, int r) {
-    const uint32_t *v = energy_term_vertices(s->terms, i);
-    if (s->targets->gradient != NULL) {
-        const double *from = s->memory->gradients[i - s->first][r];
-        double *to = s->targets->gradient + 3 * (size_t)v[r];
-        for (int k = 0; k < 3; k++) to[k] += from[k];
-    }
-    if (s->targets->matrix == NULL) return;
+static void add_gradient(const energy_sum *s, size_t i, int r, uint32_t vertex) {
+    const double *from = s->memory->gradients[i - s->first][r];
+    double *to = s->targets->gradient + 3 * (size_t)vertex;
+    for (int k = 0; k < 3; k++) to[k] += from[k];
+}
+
+static void add_hessian(const energy_sum *s, size_t i, int r, const uint32_t *v, int size) {
     double(*hessian)[12] = hessian_of_term(s, i);
-    int size = energy_term_size(s->terms, i);
     for (int c = 0; c < size; c++) add_block(s, v[r], s->memory->slots[i][4 * r + c], hessian, r, c);
 }
 
-/* Eight neighbours in memory have one task, which adds to them in the order of terms. */
+/* Eight neighbours in memory have one task, which adds to them in the order of terms. Vertices that repeat an earlier one have a gradient
+ * of 0: to add it takes less time than to foresee how many there are. */
 static void add_share(void *data, uint32_t task) {
     const energy_sum *s = data;
-    const bool alone = s->task_count == 1;
+    const bool alone = s->task_count == 1, gradient = s->targets->gradient != NULL;
     for (size_t i = s->first; i < s->end; i++) {
         const uint32_t *v = energy_term_vertices(s->terms, i);
-        int size = energy_term_size(s->terms, i);
-        for (int r = 0; r < size; r++) {
-            if (alone || v[r] / 8 % s->task_count == task) add_term(s, i, r);
+        const int size = s->targets->matrix != NULL ? energy_term_size(s->terms, i) : 0;
+        for (int r = 0; r < 4; r++) {
+            if (!alone && v[r] / 8 % s->task_count != task) continue;
+            if (gradient) add_gradient(s, i, r, v[r]);
+            if (r < size) add_hessian(s, i, r, v, size);
         }
     }
 }

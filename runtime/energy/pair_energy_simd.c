@@ -6,50 +6,11 @@
 #include "runtime/energy/energy.h"
 #include "src/core/simd_wide.h"
 
+#include <assert.h>
+#include <stddef.h>
+
 /* Whole, so that a value alone has no part of a gradient. */
 #define INLINED static inline __attribute__((always_inline))
-
-/* ---- eight items, lane by lane ------------------------------------------------------------------------------ */
-
-typedef struct item_lanes {
-    uint32_t vertices[4][LANES];
-    double weights[4][LANES];
-    double named[2][LANES]; /* the last two weights; 0 where the kind has no such vertex */
-    double factors[LANES], separations[LANES];
-    double thresholds[LANES]; /* 0 except of two edges */
-    uint32_t half_spaces;     /* a set of lanes */
-    bool with_thresholds;
-} item_lanes;
-
-static inline void gather_items(const cscd_energy_options *options, const cscd_proximity *items, size_t count,
-                                item_lanes *out) {
-    out->half_spaces = 0;
-    out->with_thresholds = false;
-    for (size_t lane = 0; lane < LANES; lane++) {
-        const cscd_proximity *item = &items[lane < count ? lane : count - 1];
-        const int size = energy_vertices_of(item->kind);
-        energy_item_prefetch(item);
-        for (int i = 0; i < 4; i++) out->vertices[i][lane] = item->vertices[i];
-        for (int i = 0; i < 4; i++) out->weights[i][lane] = item->weights[i];
-        out->named[0][lane] = size > 2 ? item->weights[2] : 0.0;
-        out->named[1][lane] = size > 3 ? item->weights[3] : 0.0;
-        out->factors[lane] = options->stiffness * energy_weight_of(options, item);
-        out->separations[lane] = energy_separation_of(options, item);
-        out->thresholds[lane] = item->kind == CSCD_CONTACT_EE ? item->threshold : 0.0;
-        out->half_spaces |= (uint32_t)(item->kind == CSCD_CONTACT_VH) << lane;
-        out->with_thresholds |= out->thresholds[lane] > 0.0;
-    }
-}
-
-static inline f64w load_lanes(const double *from) {
-    f64w v;
-    memcpy(&v, from, sizeof v);
-    return v;
-}
-
-static inline void store_lanes(f64w v, double *to) {
-    memcpy(to, &v, sizeof v);
-}
 
 static inline f64w dot_lanes(const f64w a[3], const f64w b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -63,20 +24,23 @@ static inline void cross_lanes(const f64w a[3], const f64w b[3], f64w out[3]) {
 
 /* ---- frames ------------------------------------------------------------------------------------------------- */
 
-/* As pair_frame; tangents and slides that a pair lacks are 0. */
+/* As pair_frame, with what else a law needs; tangents and slides that a pair lacks are 0. */
 typedef struct frame_lanes {
+    f64w points[4][3], sides[3][3]; /* from the first point to the others */
     f64w weights[4], normal[3], distance;
-    f64w tangents[2][3], slides[2][4]; /* of any length */
-    f64w inverses[2];                  /* of the squared lengths of tangents */
+    f64w tangents[2][3], slides[2][4];  /* of any length */
+    f64w factor, separation, threshold; /* the last is 0 except of two edges */
+    uint32_t half_spaces;               /* a set of lanes */
+    f64w squares[2], inverses[2];       /* of the lengths of tangents; 0 where there is none */
     uint32_t resting; /* the lanes whose points are in one place, of no normal that the positions say */
 } frame_lanes;
 
 /* The slides along an edge of a, and along an edge or a face of b, as those of pair_frame.c. */
-static inline void name_slide_lanes(const f64w w[4], const f64w named[2], f64w slides[2][4]) {
+static inline void name_slide_lanes(const f64w w[4], f64w slides[2][4]) {
     const f64w zero = f64w_all(0.0), one = f64w_all(1.0), minus = f64w_all(-1.0);
     const maskw edge_a = maskw_below(zero, w[0]) & maskw_below(zero, w[1]);
-    const maskw on_1 = maskw_below(w[1], zero), on_2 = maskw_below(named[0], zero),
-                on_3 = maskw_below(named[1], zero);
+    const maskw on_1 = maskw_below(w[1], zero), on_2 = maskw_below(w[2], zero),
+                on_3 = maskw_below(w[3], zero);
     const maskw along_12 = on_1 & on_2, along_13 = on_1 & on_3, along_23 = on_2 & on_3;
     const maskw face = along_12 & on_3, edge_b = edge_a & along_23;
     slides[0][0] = maskw_choose(edge_a, minus, zero);
@@ -91,71 +55,105 @@ static inline void name_slide_lanes(const f64w w[4], const f64w named[2], f64w s
 }
 
 /* The sum of amounts[i] times the i-th point, by the sides from the first point to the others. */
-static inline void combine_sides(f64w sides[3][3], const f64w amounts[4], f64w out[3]) {
+static inline void combine_sides(const f64w sides[3][3], const f64w amounts[4], f64w out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = amounts[1] * sides[0][k] + amounts[2] * sides[1][k] + amounts[3] * sides[2][k];
 }
 
-/* Takes off v what it has along the first `count` tangents, and changes its weights with it. */
-static inline void take_off_lanes(f64w v[3], f64w weights[4], const frame_lanes *f, int count) {
+/* Takes off v what it has along the first `count` tangents, and changes its weights with it, unless they are NULL. */
+INLINED void take_off_lanes(f64w v[3], f64w *weights, const frame_lanes *f, int count) {
     f64w along[2];
     for (int j = 0; j < count; j++) along[j] = dot_lanes(v, f->tangents[j]) * f->inverses[j];
     for (int j = 0; j < count; j++) {
         for (int k = 0; k < 3; k++) v[k] -= along[j] * f->tangents[j][k];
-        for (int i = 0; i < 4; i++) weights[i] -= along[j] * f->slides[j][i];
+        for (int i = 0; i < 4 && weights != NULL; i++) weights[i] -= along[j] * f->slides[j][i];
     }
 }
 
-/* Makes the j-th tangent orthogonal to the one before, and returns its squared length; 0 where there is none. */
-static inline f64w straighten_slide(f64w sides[3][3], int j, frame_lanes *f) {
+/* Makes the j-th tangent orthogonal to the one before. */
+INLINED void straighten_slide(int j, bool derived, frame_lanes *f) {
     const f64w zero = f64w_all(0.0);
     f64w *along = f->tangents[j];
-    combine_sides(sides, f->slides[j], along);
+    combine_sides(f->sides, f->slides[j], along);
     f64w whole = dot_lanes(along, along);
-    for (int again = 0; again < 2; again++) take_off_lanes(along, f->slides[j], f, j);
+    for (int again = 0; again < 2; again++) take_off_lanes(along, derived ? f->slides[j] : NULL, f, j);
     f64w squared = dot_lanes(along, along);
     maskw has = maskw_below(f64w_all(LEAST_SQUARED_SINE) * whole, squared);
     f->inverses[j] = maskw_choose(has, 1.0 / squared, zero);
-    return maskw_choose(has, squared, zero);
+    f->squares[j] = maskw_choose(has, squared, zero);
 }
 
-/* The lanes of half-spaces: the plane's normal is that of the item. */
-static inline void set_half_spaces(const cscd_proximity *items, size_t count, uint32_t lanes, int first,
-                                   f64w sides[3][3], frame_lanes *f) {
-    double normals[3][WIDTH];
-    f64w apart[3], normal[3];
+/* The last four doubles of an item: threshold, weight and separation come after a number that is not needed. */
+enum { LAST_FOUR = offsetof(cscd_proximity, threshold) - sizeof(double) };
+static_assert(offsetof(cscd_proximity, weight) == LAST_FOUR + 2 * sizeof(double) &&
+                  offsetof(cscd_proximity, separation) == LAST_FOUR + 3 * sizeof(double),
+              "a kernel loads them at once");
+
+INLINED void read_items(const near_terms *near, const cscd_proximity *const items[WIDTH], frame_lanes *f) {
+    const double *weights[WIDTH], *last[WIDTH];
+    const cscd_energy_options *options = &near->options;
+    uint32_t edges = 0;
+    f64w numbers[4];
+    f->half_spaces = 0;
     for (int lane = 0; lane < WIDTH; lane++) {
-        const size_t i = (size_t)(first + lane);
-        for (int k = 0; k < 3; k++) normals[k][lane] = items[i < count ? i : count - 1].normal[k];
+        energy_item_prefetch(items[lane]);
+        weights[lane] = items[lane]->weights;
+        last[lane] = (const double *)(const void *)((const char *)items[lane] + LAST_FOUR);
+        edges |= (uint32_t)(items[lane]->kind == CSCD_CONTACT_EE) << lane;
+        f->half_spaces |= (uint32_t)(items[lane]->kind == CSCD_CONTACT_VH) << lane;
     }
-    for (int k = 0; k < 3; k++) {
-        normal[k] = load_lanes(normals[k]);
-        apart[k] = f64w_all(0.0) - sides[0][k];
-        f->normal[k] = f64w_select(lanes, normal[k], f->normal[k]);
+    f64w_load_quads(weights, f->weights);
+    f64w_load_quads(last, numbers);
+    f->threshold = f64w_select(edges, numbers[1], f64w_all(0.0));
+    f->separation = options->beyond ? numbers[3] : f64w_all(0.0);
+    for (int lane = 0; lane < WIDTH && options->by_count; lane++) numbers[2][lane] = items[lane]->count;
+    f->factor = options->stiffness * numbers[2];
+    for (int i = 0; i < 4; i++) {
+        uint32_t vertices[WIDTH];
+        for (int lane = 0; lane < WIDTH; lane++) vertices[lane] = items[lane]->vertices[i];
+        f64w_load_points(near->x, vertices, f->points[i]);
     }
-    f->distance = f64w_select(lanes, dot_lanes(apart, normal), f->distance);
-    f->resting &= ~lanes;
 }
 
-INLINED void find_frames(f64w points[4][3], const f64w named[2], frame_lanes *f) {
-    const f64w zero = f64w_all(0.0);
-    f64w sides[3][3], apart[3], across[3];
+INLINED void find_tangents(const near_terms *near, const cscd_proximity *const items[WIDTH], bool derived,
+                           frame_lanes *f) {
+    read_items(near, items, f);
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) sides[i][k] = points[i + 1][k] - points[0][k];
+        for (int k = 0; k < 3; k++) f->sides[i][k] = f->points[i + 1][k] - f->points[0][k];
     }
-    name_slide_lanes(f->weights, named, f->slides);
-    const f64w first = straighten_slide(sides, 0, f), second = straighten_slide(sides, 1, f);
-    const maskw both = maskw_below(zero, first) & maskw_below(zero, second);
-    combine_sides(sides, f->weights, apart);
-    for (int again = 0; again < 2; again++) take_off_lanes(apart, f->weights, f, 2);
+    name_slide_lanes(f->weights, f->slides);
+    for (int j = 0; j < 2; j++) straighten_slide(j, derived, f);
+}
+
+INLINED void find_distances(bool derived, frame_lanes *f) {
+    const f64w zero = f64w_all(0.0);
+    f64w apart[3], across[3];
+    const maskw both = maskw_below(zero, f->squares[0]) & maskw_below(zero, f->squares[1]);
+    combine_sides(f->sides, f->weights, apart);
+    for (int again = 0; again < 2; again++) take_off_lanes(apart, derived ? f->weights : NULL, f, 2);
     cross_lanes(f->tangents[0], f->tangents[1], across);
-    f64w height = dot_lanes(apart, across), length = f64w_sqrt(dot_lanes(apart, apart));
-    f64w size = maskw_choose(both, f64w_sqrt(first) * f64w_sqrt(second), length);
+    f64w height = dot_lanes(apart, across);
+    f64w length = f64w_sqrt(maskw_choose(both, f->squares[1] * f->inverses[0], dot_lanes(apart, apart)));
+    f64w size = maskw_choose(both, f->squares[0] * length, length);
     f64w inverse = maskw_choose(maskw_below(zero, size), 1.0 / size, zero);
     inverse = maskw_choose(both & maskw_below(height, zero), -inverse, inverse);
     f->distance = maskw_choose(both, height * inverse, length);
     for (int k = 0; k < 3; k++) f->normal[k] = maskw_choose(both, across[k], apart[k]) * inverse;
     f->resting = f64w_at_most(maskw_choose(both, f64w_all(1.0), length), zero);
+}
+
+/* The lanes of half-spaces: the plane's normal is that of the item. */
+static inline void set_half_spaces(const cscd_proximity *const items[WIDTH], frame_lanes *f) {
+    f64w apart[3], normal[3];
+    for (int k = 0; k < 3; k++) {
+        double numbers[WIDTH];
+        for (int lane = 0; lane < WIDTH; lane++) numbers[lane] = items[lane]->normal[k];
+        memcpy(&normal[k], numbers, sizeof numbers);
+        apart[k] = f64w_all(0.0) - f->sides[0][k];
+        f->normal[k] = f64w_select(f->half_spaces, normal[k], f->normal[k]);
+    }
+    f->distance = f64w_select(f->half_spaces, dot_lanes(apart, normal), f->distance);
+    f->resting &= ~f->half_spaces;
 }
 
 /* ---- laws --------------------------------------------------------------------------------------------------- */
@@ -186,7 +184,7 @@ typedef struct curve_lanes {
     f64w value, slope;
 } curve_lanes;
 
-static inline curve_lanes clamped_barriers(f64w x, f64w r) {
+INLINED curve_lanes clamped_barriers(f64w x, f64w r) {
     f64w ratio = x / r, beyond = x - r, share = beyond / x, logarithm = logarithm_lanes(ratio);
     maskw finite = maskw_at_most(f64w_all(0x1p-1022), ratio);
     return (curve_lanes){maskw_choose(finite, -beyond * beyond * logarithm, f64w_all(INFINITY)),
@@ -201,8 +199,8 @@ static inline f64w physical_factors(const cscd_energy_options *options, f64w s) 
 }
 
 /* The law times the factor. Where the value is 0 or infinite, the slope is 0. */
-static inline curve_lanes laws_at(const cscd_energy_options *options, f64w distance, f64w separation,
-                                  f64w factor, f64w *gap) {
+INLINED curve_lanes laws_at(const cscd_energy_options *options, f64w distance, f64w separation, f64w factor,
+                            f64w *gap) {
     const f64w r = f64w_all(options->reach), zero = f64w_all(0.0), infinite = f64w_all(INFINITY);
     *gap = distance - separation;
     f64w left = r - *gap;
@@ -230,7 +228,7 @@ static inline curve_lanes laws_at(const cscd_energy_options *options, f64w dista
 /* ---- nearly parallel edges ---------------------------------------------------------------------------------- */
 
 /* Multiplies with the mollifier, as mollify_term. */
-static inline void mollify_lanes(f64w points[4][3], f64w threshold, curve_lanes *c, f64w *gradient) {
+static inline void mollify_lanes(const f64w points[4][3], f64w threshold, curve_lanes *c, f64w *gradient) {
     const f64w zero = f64w_all(0.0);
     f64w a[3], b[3], across[3], by_a[3], by_b[3];
     for (int k = 0; k < 3; k++) {
@@ -257,64 +255,63 @@ static inline void mollify_lanes(f64w points[4][3], f64w threshold, curve_lanes 
     c->value *= value;
 }
 
-/* ---- eight pairs -------------------------------------------------------------------------------------------- */
+/* ---- a batch ------------------------------------------------------------------------------------------------ */
 
-/* Writes each lane's twelve numbers, one after the other. */
-static inline void store_gradients(f64w gradient[12], int first, size_t count, double (*out)[4][3]) {
-    double lanes[12][WIDTH];
-    for (int i = 0; i < 12; i++) store_lanes(gradient[i], lanes[i]);
-    for (int lane = 0; lane < WIDTH && (size_t)(first + lane) < count; lane++) {
-        for (int i = 0; i < 12; i++) out[first + lane][i / 3][i % 3] = lanes[i][lane];
+/* Writes each lane's twelve numbers, one after the other; those behind the last item are lost. */
+static inline void store_gradients(const f64w gradient[12], size_t first, size_t count, double (*out)[4][3]) {
+    double lost[12], *rows[WIDTH];
+    for (int i = 0; i < 12; i += 4) {
+        for (size_t lane = 0; lane < WIDTH; lane++)
+            rows[lane] = (first + lane < count ? out[first + lane][0] : lost) + i;
+        f64w_store_quads(gradient + i, rows);
     }
 }
 
-INLINED uint32_t evaluate_some(const near_terms *near, const cscd_proximity *items, size_t count,
-                               bool derived, const item_lanes *lanes, int first, const energy_outputs *out) {
-    f64w points[4][3], named[2], gradient[12], gap;
-    frame_lanes f;
-    for (int i = 0; i < 4; i++) {
-        f64w_load_points(near->x, lanes->vertices[i] + first, points[i]);
-        f.weights[i] = load_lanes(lanes->weights[i] + first);
-    }
-    for (int i = 0; i < 2; i++) named[i] = load_lanes(lanes->named[i] + first);
-    find_frames(points, named, &f);
-    const uint32_t half_spaces = lanes->half_spaces >> first & ALL_WIDTH;
-    if (half_spaces != 0) {
-        f64w sides[3][3];
-        for (int k = 0; k < 3; k++) sides[0][k] = points[1][k] - points[0][k];
-        set_half_spaces(items, count, half_spaces, first, sides, &f);
-    }
-    curve_lanes c = laws_at(&near->options, f.distance, load_lanes(lanes->separations + first),
-                            load_lanes(lanes->factors + first), &gap);
-    const f64w unmollified = c.value;
-    for (int i = 0; derived && i < 12; i++) gradient[i] = c.slope * f.weights[i / 3] * f.normal[i % 3];
-    if (lanes->with_thresholds)
-        mollify_lanes(points, load_lanes(lanes->thresholds + first), &c, derived ? gradient : NULL);
-    store_lanes(c.value, out->values + first);
-    store_lanes(gap, out->gaps + first);
-    if (!derived) return 0;
-    store_gradients(gradient, first, count, out->gradients);
-    return (f.resting & f64w_below(f64w_all(0.0), unmollified)) << first;
+INLINED uint64_t finish_lanes(const frame_lanes *f, curve_lanes c, size_t first, size_t count, bool derived,
+                              const energy_outputs *out) {
+    const uint64_t resting = f->resting & f64w_below(f64w_all(0.0), c.value);
+    f64w gradient[12];
+    for (int i = 0; derived && i < 12; i++) gradient[i] = c.slope * f->weights[i / 3] * f->normal[i % 3];
+    if (f64w_below(f64w_all(0.0), f->threshold) != 0)
+        mollify_lanes(f->points, f->threshold, &c, derived ? gradient : NULL);
+    memcpy(out->values + first, &c.value, sizeof c.value);
+    if (derived) store_gradients(gradient, first, count, out->gradients);
+    return resting << first;
 }
 
-INLINED uint32_t evaluate_eight(const near_terms *near, size_t first, size_t count, bool derived,
+/* Step by step for all vectors: each step is a long chain, so the processor works at several vectors at a time. The last item is
+ * repeated up to a whole vector. */
+INLINED uint64_t evaluate_batch(const near_terms *near, size_t first, size_t count, bool derived,
                                 const energy_outputs *out) {
-    item_lanes lanes;
-    uint32_t resting = 0;
-    gather_items(&near->options, near->items + first, count, &lanes);
-    for (int i = 0; i < LANES; i += WIDTH)
-        resting |= evaluate_some(near, near->items + first, count, derived, &lanes, i, out);
+    const cscd_proximity *items[ENERGY_BATCH];
+    frame_lanes frames[ENERGY_BATCH / WIDTH];
+    curve_lanes curves[ENERGY_BATCH / WIDTH];
+    uint64_t resting = 0;
+    const size_t vectors = (count + WIDTH - 1) / WIDTH;
+    for (size_t i = 0; i < vectors * WIDTH; i++) items[i] = &near->items[first + (i < count ? i : count - 1)];
+    for (size_t i = 0; i < vectors; i++) find_tangents(near, items + WIDTH * i, derived, &frames[i]);
+    for (size_t i = 0; i < vectors; i++) {
+        find_distances(derived, &frames[i]);
+        if (frames[i].half_spaces != 0) set_half_spaces(items + WIDTH * i, &frames[i]);
+    }
+    for (size_t i = 0; i < vectors; i++) {
+        f64w gap;
+        curves[i] = laws_at(&near->options, frames[i].distance, frames[i].separation, frames[i].factor, &gap);
+        memcpy(out->gaps + WIDTH * i, &gap, sizeof gap);
+    }
+    for (size_t i = 0; i < vectors; i++)
+        resting |= finish_lanes(&frames[i], curves[i], WIDTH * i, count, derived, out);
     return resting;
 }
 
-static uint32_t evaluate_values(const near_terms *near, size_t first, size_t count,
+static uint64_t evaluate_values(const near_terms *near, size_t first, size_t count,
                                 const energy_outputs *out) {
-    return evaluate_eight(near, first, count, false, out);
+    return evaluate_batch(near, first, count, false, out);
 }
 
-static uint32_t evaluate_gradients(const near_terms *near, size_t first, size_t count,
+static uint64_t evaluate_gradients(const near_terms *near, size_t first, size_t count,
                                    const energy_outputs *out) {
-    return evaluate_eight(near, first, count, true, out);
+    return evaluate_batch(near, first, count, true, out);
 }
 
 const energy_kernels SIMD_NAME(energy_kernels) = {evaluate_values, evaluate_gradients};

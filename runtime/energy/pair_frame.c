@@ -55,9 +55,9 @@ static void take_off(double v[3], double weights[4], const pair_frame *f, int co
     }
 }
 
-/* Makes the tangents orthogonal, of any length, and gives the inverses of their squared lengths; a slide along no direction goes
+/* Makes the tangents orthogonal, of any length, and gives their squared lengths and the inverses of these; a slide along no direction goes
  * away. */
-static void straighten_slides(const double *points[4], pair_frame *f, double inverses[2], double lengths[2]) {
+static void straighten_slides(const double *points[4], pair_frame *f, double inverses[2], double squares[2]) {
     int count = 0;
     for (int j = 0; j < f->slide_count; j++) {
         double along[3], slide[4];
@@ -70,15 +70,15 @@ static void straighten_slides(const double *points[4], pair_frame *f, double inv
         memcpy(f->tangents[count], along, sizeof along);
         memcpy(f->slides[count], slide, sizeof slide);
         inverses[count] = 1.0 / squared;
-        lengths[count++] = sqrt(squared);
+        squares[count++] = squared;
     }
     f->slide_count = count;
 }
 
 /* Makes the slides those by a unit of length. */
-static void shorten_slides(pair_frame *f, const double lengths[2]) {
+static void shorten_slides(pair_frame *f, const double squares[2]) {
     for (int j = 0; j < f->slide_count; j++) {
-        double inverse = 1.0 / lengths[j];
+        double inverse = 1.0 / sqrt(squares[j]);
         for (int k = 0; k < 3; k++) f->tangents[j][k] *= inverse;
         for (int i = 0; i < 4; i++) f->slides[j][i] *= inverse;
     }
@@ -131,7 +131,7 @@ static void normal_of_touch(const cscd_proximity *item, pair_frame *f) {
 
 void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f) {
     const double *points[4];
-    double apart[3], inverses[2], lengths[2];
+    double apart[3], inverses[2], squares[2];
     for (int i = 0; i < 4; i++) points[i] = x + (size_t)item->vertices[i] * 3;
     f->straight = false;
     memcpy(f->weights, item->weights, sizeof f->weights);
@@ -140,19 +140,21 @@ void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f)
         frame_of_half_space(item, points, f);
         return;
     }
-    straighten_slides(points, f, inverses, lengths);
+    straighten_slides(points, f, inverses, squares);
     combine_points(points, f->weights, apart);
     for (int again = 0; again < 2; again++) /* the second time for what rounding has left */
         take_off(apart, f->weights, f, f->slide_count, inverses);
     if (f->slide_count == 2) {
         vec3_cross(f->tangents[0], f->tangents[1], f->normal);
-        double height = vec3_dot(apart, f->normal), inverse = 1.0 / (lengths[0] * lengths[1]);
+        /* The tangents' lengths by one root: a b = a^2 sqrt(b^2 / a^2). */
+        double height = vec3_dot(apart, f->normal);
+        double inverse = 1.0 / (squares[0] * sqrt(squares[1] * inverses[0]));
         if (height < 0.0) inverse = -inverse;
         f->distance = height * inverse;
         for (int k = 0; k < 3; k++) f->normal[k] *= inverse;
-        shorten_slides(f, lengths);
+        shorten_slides(f, squares);
     } else {
-        shorten_slides(f, lengths);
+        shorten_slides(f, squares);
         f->distance = sqrt(vec3_dot(apart, apart));
         for (int k = 0; k < 3; k++) f->normal[k] = apart[k];
         if (f->distance > 0.0)

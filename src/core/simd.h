@@ -31,6 +31,7 @@
  *     sqrt                          x                    x      x      sqrt of each lane
  *     load_point                                  x                    three loads
  *     load_points                                        x      x      the same; two points
+ *     load_quads, store_quads                                   x      loops over rows of four
  *
  * f64w and i64w are in simd_wide.h; the operations across lanes are at the end.
  */

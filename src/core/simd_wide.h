@@ -219,3 +219,79 @@ static inline f64w f64w_all(double x) {
     f64w zero = {0.0};
     return x - zero;
 }
+
+/* ---- rows of four doubles -------------------------------------------------------------------------------- */
+
+/* Lane i of out[k] is the k-th of four doubles at rows[i]; and back. */
+#if SIMD_LEVEL == SIMD_AVX512
+
+static inline void f64w_load_quads(const double *const rows[WIDTH], f64w out[4]) {
+    f64w pairs[4], q[4];
+    for (int i = 0; i < 4; i++) {
+        memcpy(&q[i], rows[i], 4 * sizeof(double));
+        memcpy((char *)&q[i] + 4 * sizeof(double), rows[4 + i], 4 * sizeof(double));
+    }
+    for (int i = 0; i < 2; i++) {
+        pairs[i] = __builtin_shufflevector(q[2 * i], q[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        pairs[2 + i] = __builtin_shufflevector(q[2 * i], q[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int i = 0; i < 2; i++) {
+        out[i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13);
+        out[2 + i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+}
+
+static inline void f64w_store_quads(const f64w v[4], double *const rows[WIDTH]) {
+    f64w pairs[4], q[4];
+    for (int i = 0; i < 2; i++) {
+        pairs[i] = __builtin_shufflevector(v[2 * i], v[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        pairs[2 + i] = __builtin_shufflevector(v[2 * i], v[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int i = 0; i < 2; i++) {
+        q[i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13);
+        q[2 + i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+    for (int i = 0; i < 4; i++) {
+        memcpy(rows[i], &q[i], 4 * sizeof(double));
+        memcpy(rows[4 + i], (const char *)&q[i] + 4 * sizeof(double), 4 * sizeof(double));
+    }
+}
+
+#elif SIMD_LEVEL == SIMD_AVX2
+
+static inline void f64w_transpose(f64w r[4]) {
+    f64w a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+         b = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6);
+    f64w c = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7),
+         d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+    r[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+    r[1] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+    r[2] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+    r[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+}
+
+static inline void f64w_load_quads(const double *const rows[WIDTH], f64w out[4]) {
+    for (int i = 0; i < 4; i++) memcpy(&out[i], rows[i], sizeof out[i]);
+    f64w_transpose(out);
+}
+
+static inline void f64w_store_quads(const f64w v[4], double *const rows[WIDTH]) {
+    f64w r[4] = {v[0], v[1], v[2], v[3]};
+    f64w_transpose(r);
+    for (int i = 0; i < 4; i++) memcpy(rows[i], &r[i], sizeof r[i]);
+}
+
+#else
+
+static inline void f64w_load_quads(const double *const rows[WIDTH], f64w out[4]) {
+    for (int k = 0; k < 4; k++) out[k] = (f64w){rows[0][k], rows[1][k]};
+}
+
+static inline void f64w_store_quads(const f64w v[4], double *const rows[WIDTH]) {
+    for (int k = 0; k < 4; k++) {
+        rows[0][k] = v[k][0];
+        rows[1][k] = v[k][1];
+    }
+}
+
+#endif

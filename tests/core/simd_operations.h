@@ -40,6 +40,7 @@ typedef struct simd_operations {
     void (*f64w_select)(uint32_t lanes, const double *a, const double *b, double *out);
     void (*f64w_all)(double x, double *out);
     void (*f64w_load_points)(const double *positions, const uint32_t *indices, double (*out)[8]);
+    void (*f64w_quads)(double (*rows)[4], double (*columns)[8], double (*back)[4]);
 } simd_operations;
 
 extern const simd_operations simd_operations_scalar;

@@ -159,6 +159,21 @@ static void load_points_x8(const double *positions, const uint32_t *indices, dou
     }
 }
 
+static void load_and_store_quads(double (*rows)[4], double (*columns)[8], double (*back)[4]) {
+    for (int i = 0; i < LANES; i += WIDTH) {
+        const double *from[WIDTH];
+        double *to[WIDTH];
+        f64w quads[4];
+        for (int lane = 0; lane < WIDTH; lane++) {
+            from[lane] = rows[i + lane];
+            to[lane] = back[i + lane];
+        }
+        f64w_load_quads(from, quads);
+        for (int k = 0; k < 4; k++) store_wide(columns[k] + i, quads[k]);
+        f64w_store_quads(quads, to);
+    }
+}
+
 const simd_operations SIMD_NAME(simd_operations) = {
     .level = SIMD_LEVEL,
     .f32_min = f32_min,
@@ -189,4 +204,5 @@ const simd_operations SIMD_NAME(simd_operations) = {
     .f64w_select = wide_select,
     .f64w_all = wide_all,
     .f64w_load_points = load_points_x8,
+    .f64w_quads = load_and_store_quads,
 };

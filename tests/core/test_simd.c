@@ -216,6 +216,20 @@ TEST(conversions_as_in_c) {
     on_all_levels(check_conversions);
 }
 
+static void check_quads(const simd_operations *o, random_stream *random) {
+    double rows[LANES][4], columns[4][LANES], back[LANES][4];
+    for (int i = 0; i < 4 * LANES; i++) rows[i / 4][i % 4] = random_number(random);
+    o->f64w_quads(rows, columns, back);
+    for (int i = 0; i < 4 * LANES; i++) {
+        assert_number(columns[i % 4][i / 4], rows[i / 4][i % 4]);
+        assert_number(back[i / 4][i % 4], rows[i / 4][i % 4]);
+    }
+}
+
+TEST(rows_of_four_become_columns_and_rows_again) {
+    on_all_levels(check_quads);
+}
+
 enum { POINTS = 20 };
 static double *positions; /* the page behind the last of them cannot be read */
 
