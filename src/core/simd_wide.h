@@ -228,8 +228,10 @@ static inline f64w f64w_all(double x) {
 static inline void f64w_load_quads(const double *const rows[WIDTH], f64w out[4]) {
     f64w pairs[4], q[4];
     for (int i = 0; i < 4; i++) {
-        memcpy(&q[i], rows[i], 4 * sizeof(double));
-        memcpy((char *)&q[i] + 4 * sizeof(double), rows[4 + i], 4 * sizeof(double));
+        f64x4 low, high;
+        memcpy(&low, rows[i], sizeof low);
+        memcpy(&high, rows[4 + i], sizeof high);
+        q[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
     }
     for (int i = 0; i < 2; i++) {
         pairs[i] = __builtin_shufflevector(q[2 * i], q[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
@@ -252,8 +254,10 @@ static inline void f64w_store_quads(const f64w v[4], double *const rows[WIDTH]) 
         q[2 + i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
     }
     for (int i = 0; i < 4; i++) {
-        memcpy(rows[i], &q[i], 4 * sizeof(double));
-        memcpy(rows[4 + i], (const char *)&q[i] + 4 * sizeof(double), 4 * sizeof(double));
+        f64x4 low = __builtin_shufflevector(q[i], q[i], 0, 1, 2, 3);
+        f64x4 high = __builtin_shufflevector(q[i], q[i], 4, 5, 6, 7);
+        memcpy(rows[i], &low, sizeof low);
+        memcpy(rows[4 + i], &high, sizeof high);
     }
 }
 
