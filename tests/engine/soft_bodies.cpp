@@ -13,17 +13,15 @@
 
 namespace {
 
-enum class driver { none, max_step, truncate, make_safe, halves, alone };
-constexpr std::array<const char *, 6> driver_names{"none",      "max_step", "truncate",
-                                                   "make_safe", "halves",   "alone"};
+enum class driver { none, max_step, truncate, make_safe, alone };
+constexpr std::array<const char *, 5> driver_names{"none", "max_step", "truncate", "make_safe", "alone"};
 
 constexpr const char *help =
     "usage: soft_bodies [--frames N] [--triangles N] [--scene NAME] [--driver NAME] [--json FILE] [--record FOLDER]\n"
     "\n"
     "Moves soft bodies of Bullet, and keeps each frame free of contact by each driver: none, which is Bullet's own\n"
-    "collisions; after these cscd_detector_max_step, cscd_detector_truncate, or cscd_detector_make_safe; halves, which asks\n"
-    "make_safe for half of the ways, down to an eighth, where it truncates; and alone, which is make_safe without Bullet's\n"
-    "collisions. Crossing: frames in which something touches on the way, and in which\n"
+    "collisions; after these cscd_detector_max_step, cscd_detector_truncate, or cscd_detector_make_safe; and alone, which\n"
+    "is make_safe without Bullet's collisions. Crossing: frames in which something touches on the way, and in which\n"
     "triangles cross at the end. Frozen: frames in which vertices made less than a hundredth of their ways in the mean.\n"
     "Share: the mean of what vertices made of their ways, along them. Late: frames by which obstacles are. Ends with 1 if\n"
     "make_safe let anything touch, or froze, or if nothing touches without it.\n";
@@ -77,10 +75,6 @@ class engine_trial {
         scene_.end_frame(obstacle_share);
     }
 
-    static bool responds(driver by) {
-        return by == driver::make_safe || by == driver::halves || by == driver::alone;
-    }
-
     const tally &sum() const {
         return sum_;
     }
@@ -125,33 +119,16 @@ class engine_trial {
         return share;
     }
 
-    /* Behind Bullet's step everything is where it is wanted. */
-    void want_share(double share) {
-        for (std::size_t o = 0; o < wanted_.size(); o++) {
-            for (std::size_t v = 0; v < wanted_[o].size(); v++) {
-                const btVector3 start = point_in(safe_.from[o], v);
-                point_in(safe_.reached[o], v) =
-                    start + static_cast<btScalar>(share) * (wanted_[o][v] - start);
-            }
-        }
-    }
-
-    double make_safe() {
-        cscd_safe_motion safe = safe_.end_step(bullet_scene::frame_seconds);
-        double share = 1.0;
-        while (by_ == driver::halves && share > 0.125 && safe.response_counts[CSCD_RESPONSE_TRUNCATED] > 0) {
-            want_share(share *= 0.5);
-            safe = safe_.end_step(bullet_scene::frame_seconds);
-        }
-        for (std::size_t i = 0; i < sum_.responses.size(); i++) sum_.responses[i] += safe.response_counts[i];
-        sum_.rounds += safe.rounds;
-        return share * safe.obstacle_share;
-    }
-
     double drive_motion() {
         double share = 1.0;
         if (by_ == driver::none) return share;
-        if (responds(by_)) return make_safe();
+        if (by_ == driver::make_safe || by_ == driver::alone) {
+            const cscd_safe_motion safe = safe_.end_step(bullet_scene::frame_seconds);
+            for (std::size_t i = 0; i < sum_.responses.size(); i++)
+                sum_.responses[i] += safe.response_counts[i];
+            sum_.rounds += safe.rounds;
+            return safe.obstacle_share;
+        }
         if (by_ == driver::max_step)
             share = safe_.detector->max_step(safe_.from, safe_.to, safe_.reached).fraction;
         if (by_ == driver::truncate) share = truncate_motion();
@@ -276,7 +253,7 @@ bool run_all(const engine_options &o, std::FILE *json) {
             std::printf("%s, %s: something touches\n", bullet_kind_names[kind], driver_names[by]);
             good = false;
         }
-        if (engine_trial::responds(chosen) && sum.frozen > 0) {
+        if ((chosen == driver::make_safe || chosen == driver::alone) && sum.frozen > 0) {
             std::printf("%s, %s: frames are frozen\n", bullet_kind_names[kind], driver_names[by]);
             good = false;
         }
