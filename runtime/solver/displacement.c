@@ -528,7 +528,7 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     truncation_work work = begin_truncation(d, motion, 0.5 * search_radius, end);
     bool known = config_culls(&d->config) && start_states_hold(&d->known.starts, motion->x0);
     cscd_proximities near = {.count = 0};
-    size_t near_count;
+    size_t near_count = 0;
     cscd_status status = reserve_vertices(d, &work);
     if (status == CSCD_OK) status = find_pairs_to_divide(d, &work, search_radius, &near, &near_count);
     if (status == CSCD_LIST_TOO_LONG) *out = (cscd_truncation){.near_count = near_count};
