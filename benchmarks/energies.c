@@ -82,11 +82,12 @@ typedef struct energy_scene {
     double *gradient, *blocks, *matrix, reach;
 } energy_scene;
 
-static cscd_status open_scene(energy_scene *s, uint32_t threads) {
+static cscd_status open_scene(energy_scene *s, const bench_options *o) {
     cscd_context_options options = cscd_context_defaults();
     const cscd_object_desc object =
         cscd_object_of_triangles(s->body->vertex_count, s->body->triangle_count, s->body->triangles);
-    options.thread_count = threads;
+    options.thread_count = o->thread_count;
+    options.simd = o->simd;
     cscd_status status = cscd_context_create(&options, &s->context);
     if (status == CSCD_OK) status = cscd_mesh_create(s->context, &object, 1, &s->mesh);
     if (status == CSCD_OK) status = cscd_detector_create(s->context, s->mesh, NULL, NULL, &s->detector);
@@ -164,7 +165,7 @@ static cscd_status time_scene(const energy_scene *s, uint32_t repeats, json *out
 static bool run_scene(const char *name, const deforming_body *cloth, const bench_options *o, json *out,
                       io_error *error) {
     energy_scene s = {.name = name, .body = cloth, .reach = 0.5 * cloth->edge};
-    cscd_status status = open_scene(&s, o->thread_count);
+    cscd_status status = open_scene(&s, o);
     if (status == CSCD_OK) status = time_scene(&s, o->quick ? 2 : REPEATS, out);
     close_scene(&s);
     return status == CSCD_OK || io_fail(error, "%s: %s", name, cscd_status_string(status));

@@ -133,12 +133,18 @@ static const char *fault_of_item(const cscd_mesh *mesh, const cscd_proximity *p)
     return p->threshold >= 0.0 ? NULL : "has a threshold below 0";
 }
 
-static cscd_status check_items(const cscd_energy *e, const cscd_proximities *items) {
+static cscd_status check_list(const cscd_energy *e, const cscd_proximities *items) {
     if (items == NULL || (items->items == NULL && items->count > 0))
         return context_fail(e->context, CSCD_INVALID_ARGUMENT, "items are NULL");
     if (items->count > (size_t)UINT32_MAX * 64)
         return context_fail(e->context, CSCD_INVALID_ARGUMENT,
                             "there are %zu items, expected at most 2^38 - 2^6", items->count);
+    return CSCD_OK;
+}
+
+static cscd_status check_items(const cscd_energy *e, const cscd_proximities *items) {
+    cscd_status status = check_list(e, items);
+    if (status != CSCD_OK) return status;
     for (size_t i = 0; i < items->count; i++) {
         energy_item_prefetch(&items->items[i]);
         const char *fault = fault_of_item(&e->mesh, &items->items[i]);
@@ -160,9 +166,19 @@ static void evaluate_near(const void *of, size_t i, energy_term *term) {
     energy_pair_evaluate(&n->options, &n->items[i], n->x, term);
 }
 
+/* The values of items that nobody has looked at are NaN where one of a batch has a fault, so that a long list comes from memory once. */
+static bool batch_fits(const near_terms *n, size_t first, size_t count, const energy_outputs *out) {
+    bool fits = true;
+    for (size_t i = first; n->unchecked != NULL && i < first + count; i++)
+        fits &= fault_of_item(n->unchecked, &n->items[i]) == NULL;
+    for (size_t i = 0; !fits && i < count; i++) out->values[i] = out->gaps[i] = NAN;
+    return fits;
+}
+
 /* Of pairs whose points are in one place a kernel does not know the normal. */
 static void evaluate_near_batch(const void *of, size_t first, size_t count, const energy_outputs *out) {
     const near_terms *n = of;
+    if (!batch_fits(n, first, count, out)) return;
     if (out->gradients == NULL) {
         n->kernels->values(n, first, count, out);
         return;
@@ -189,16 +205,23 @@ static cscd_status evaluate_items(cscd_energy *e, const cscd_proximities *items,
                                   const cscd_energy_options *options, const cscd_energy_targets *targets,
                                   cscd_energy_sum *out) {
     near_terms near = {.kernels = energy_kernels_of(e->context)};
+    const bool written =
+        targets != NULL && (targets->gradient != NULL || targets->blocks != NULL || targets->matrix != NULL);
+    cscd_energy_sum sum;
     if (out == NULL)
         return context_fail(e->context, CSCD_INVALID_ARGUMENT, "cscd_energy_evaluate: out is NULL");
     cscd_status status = take_options(e->context, options, &near.options);
-    if (status == CSCD_OK) status = check_items(e, items);
+    if (status == CSCD_OK) status = written ? check_items(e, items) : check_list(e, items);
     if (status == CSCD_OK) status = read_positions(e, positions, "positions", 0, &near.x);
     if (status == CSCD_OK && targets != NULL) status = energy_targets_check(e->context, &e->mesh, targets);
     if (status != CSCD_OK) return status;
     near.items = items->items;
+    near.unchecked = written ? NULL : &e->mesh;
     energy_terms terms = items->count > 0 ? terms_of_items(&near, items->count) : (energy_terms){NULL};
-    return energy_sum_terms(e->context, &e->mesh, &terms, targets, &e->memory, out);
+    status = energy_sum_terms(e->context, &e->mesh, &terms, targets, &e->memory, &sum);
+    if (status == CSCD_OK && isnan(sum.value)) status = check_items(e, items);
+    if (status == CSCD_OK) *out = sum;
+    return status;
 }
 
 cscd_status cscd_energy_evaluate(cscd_energy *energy, const cscd_proximities *items,

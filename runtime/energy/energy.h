@@ -125,6 +125,7 @@ struct near_terms {
     const cscd_proximity *items;
     const double *x;
     const energy_kernels *kernels;
+    const cscd_mesh *unchecked; /* the mesh of items that are still to be checked; else NULL */
 };
 
 /* ---- eigenvectors -------------------------------------------------------------------------------------- */

@@ -108,9 +108,11 @@ TEST(items_are_checked) {
     REFUSED("weights", w.item.weights[0] = (double)NAN);
     REFUSED("weights", w.item.weights[2] = -0.5);
     REFUSED("weights", w.item.kind = CSCD_CONTACT_EE);
+    REFUSED("weights", w.item.kind = CSCD_CONTACT_VV);
     REFUSED("threshold", w.item.threshold = -1.0);
     REFUSED("a weight below 0", w.item.weight = -1.0);
     REFUSED("a separation below 0", w.item.separation = (double)NAN);
+    REFUSED("weights", w.item.weights[1] = -1.5; w.targets = (cscd_energy_targets){NULL});
 }
 
 TEST(positions_are_checked) {
