@@ -23,7 +23,8 @@ extern "C" {
  * up to rounding, which grows as an edge or a face becomes small, and as two edges become parallel.
  *
  * Items may also be your own. Of each, kind, vertices, weights, weight, separation, threshold and count are
- * read, and of VH the normal. On the border of a feature some weights are exactly 0 (cscd_stencil). */
+ * read, and of VH the normal. On the border of a feature some weights are exactly 0 (cscd_stencil), and so are
+ * those of vertices that the kind does not have. */
 
 /* An energy of a distance d, with the reach r and a distance s to keep (cscd_energy_options). It is 0 from
  * s + r on; below, with g = d - s:
