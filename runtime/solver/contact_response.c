@@ -28,7 +28,7 @@ static const double slack = 0x1p-6;
 /* A contact next to a vertex that cannot move pushes the others hardly at all, where they weigh little, rather than far away. */
 static const double least_mobility = 0x1p-7;
 
-enum { PASSES = 40, PASSES_OF_PUSHED = 4 };
+enum { PASSES_OF_PUSHED = 4 };
 
 static void add_scaled(double sum[3], double s, const double x[3]) {
     vec3_add_scaled(sum, s, x, sum);
@@ -221,9 +221,9 @@ static void pass_over_pushed(contact_response *r, uint32_t first) {
 }
 
 /* Between two passes over all stops there are some over those on which an impulse acts, mostly few. */
-void response_stop(contact_response *r) {
+void response_stop(contact_response *r, int passes) {
     uint32_t first_pushed;
-    for (int pass = 0; pass < PASSES; pass++) {
+    for (int pass = 0; pass < passes; pass++) {
         if (pass % PASSES_OF_PUSHED != 0)
             pass_over_pushed(r, first_pushed);
         else if (!pass_over_all(r, &first_pushed))

@@ -62,6 +62,6 @@ void response_take_sides(contact_response *r, const cscd_contact *contacts, size
 /* The number of stops on which an impulse acts. */
 size_t response_count_pushed(const contact_response *r);
 
-/* Shifts vertices until no pair approaches by more than it may, or as near to that as some passes come: projected
+/* Shifts vertices until no pair approaches by more than it may, or as near to that as so many passes come: projected
  * Gauss-Seidel on accumulated impulses, so that momentum is kept, with Coulomb friction. The result does not depend on threads. */
-void response_stop(contact_response *r);
+void response_stop(contact_response *r, int passes);

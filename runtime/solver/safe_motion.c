@@ -276,6 +276,9 @@ static void begin_work(safe_work *w, double share) {
 /* The response ends after this many rounds, or after fewer when the contacts have not become fewer for a while. */
 enum { ROUNDS = 32, PATIENCE = 6 };
 
+/* Through what is pressed between two obstacles an impulse takes many passes, which are made where fewer did not help. */
+enum { PASSES = 40, PASSES_WITHOUT_SUCCESS = 400 };
+
 static bool differ_in_place(const double *a, const double *b, size_t vertex) {
     for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
         if (a[i] != b[i]) return true;
@@ -329,7 +332,7 @@ static cscd_status find_contacts(safe_work *w, step_rule rule, cscd_contacts *fo
 
 /* Responds to contacts: to the first ones where they are, and later between their features, so that none of them comes back
  * elsewhere. */
-static cscd_status respond_to(safe_work *w, const cscd_contacts *found, bool between_sides) {
+static cscd_status respond_to(safe_work *w, const cscd_contacts *found, bool between_sides, int passes) {
     response_memory *memory = &w->detector->response;
     contact_response *r = &w->response;
     const size_t more = between_sides ? found->count * STOPS_PER_CONTACT : found->count;
@@ -341,7 +344,7 @@ static cscd_status respond_to(safe_work *w, const cscd_contacts *found, bool bet
         response_take_sides(r, found->items, found->count);
     else
         response_take(r, found->items, found->count);
-    response_stop(r);
+    response_stop(r, passes);
     return CSCD_OK;
 }
 
@@ -358,7 +361,7 @@ static cscd_status respond_in_rounds(safe_work *w, bool *free) {
         if (status != CSCD_OK || *free) return status;
         if (found.count < fewest) since = round;
         fewest = found.count < fewest ? found.count : fewest;
-        status = respond_to(w, &found, round > 0);
+        status = respond_to(w, &found, round > 0, round > since ? PASSES_WITHOUT_SUCCESS : PASSES);
         if (status != CSCD_OK) return status;
     }
     place_end(w);
