@@ -17,7 +17,7 @@ RESULTS = ROOT / 'benchmarks' / 'results'
 PAGE = ROOT / 'docs' / 'about' / 'measurements.md'
 SECTIONS = (
     'demo', 'methods', 'culling-choice', 'small-steps', 'size', 'threads', 'bulk-motion', 'topology', 'intersections', 'proximity',
-    'near-pairs', 'energies',
+    'near-pairs', 'response', 'energies',
     'peers', 'elementary', 'volumes', 'charge', 'cuts', 'stiffness', 'cold-disk',
     'extremes', 'extreme-shapes', 'reports')
 OPENING = """# Measurements

@@ -98,7 +98,7 @@ CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, siz
  * A pair that such a change uncovers while it touches, or is within its distance, waits: it is left out until
  * it is farther apart than that in x0 of a call or in positions of cscd_detector_find_intersections
  * (docs/solver/guarantees.md). The first positions given after the change decide. But cscd_detector_max_step,
- * cscd_line_search_max_step and cscd_detector_truncate leave out only what touches at x0; other waiting pairs
+ * cscd_line_search_max_step, cscd_detector_truncate and _make_safe leave out only what touches at x0; other waiting pairs
  * keep their floors. Pairs of triangles wait while they intersect or touch. A pair that a later change leaves
  * out waits no more. If the answers of `ignore` change, no pair waits. An example, the second sheet on the
  * first one, sewn to it, then torn off, which prints "0 contacts, pairs wait":

@@ -260,8 +260,9 @@ typedef enum cscd_response {
 typedef struct cscd_response_options {
     uint32_t struct_size; /* set by cscd_response_defaults */
     uint32_t reserved;    /* 0 */
-    /* vertex_count finite numbers, 0 or more, in any unit; 0: the vertex goes where it wants. NULL, the
-     * default: 1 each. Obstacles, half-spaces and vertices that are not active count as 0 anyway. */
+    /* vertex_count finite numbers, 0 or more, in any unit; 0, or less than 2^-100 of the largest one: no impulse
+     * moves the vertex. NULL, the default: 1 each. Obstacles, half-spaces and vertices that are not active
+     * count as 0 anyway. */
     const double *inverse_masses;
     /* Coulomb's coefficient for each object, 0 or more; two objects have the geometric mean. NULL, the
      * default: no friction. */
@@ -280,8 +281,8 @@ static inline cscd_response_options cscd_response_defaults(void) {
 typedef struct cscd_safe_motion {
     const uint8_t *responses;                      /* one cscd_response per vertex */
     uint32_t response_counts[CSCD_RESPONSE_COUNT]; /* the numbers of vertices */
-    uint32_t rounds;                               /* searches: 1 if x1 was safe */
-    uint32_t truncations;                          /* those after which planes shortened motions */
+    uint32_t rounds;                               /* of the search for contacts */
+    uint32_t truncations;                          /* rounds after which planes shortened motions */
     size_t pushed;                                 /* pairs of points on which an impulse acts */
     /* The share of its motion that a vertex made, along it, from 0 to 1: the mean, and the least. Those of
      * obstacles, and those that did not want to move, do not count. */
@@ -300,7 +301,8 @@ typedef struct cscd_safe_motion {
  * into contact elsewhere stop before a plane between them. What this leaves after some rounds is shortened to
  * such planes, as in cscd_detector_truncate; where that comes to no end, all wants half of its motion, and so
  * on. Obstacles go where they want unless something is caught between them, and then stop as a whole. The
- * vertices of a seam are shifted by the same.
+ * vertices of a seam are shifted by the same. Pairs that are nearer than min_separation at x0 part by a share of
+ * what is missing.
  *
  * The certificate is for the positions as stored: nothing touches on the motion but what is `held`. As in
  * cscd_detector_max_step no pair sinks below its floor (docs/solver/guarantees.md). A velocity follows from

@@ -310,7 +310,7 @@ class Detector(LiveSettings):
         Parameters
         ----------
         inverse_masses : (n,) floats, optional
-            0: the vertex goes where it wants, as obstacles do anyway. 1 each by default.
+            0: no impulse moves the vertex, nor any obstacle. 1 each by default.
         friction : (object_count,) floats or a number, optional
             Coulomb's coefficient of each object; two objects have the geometric mean.
 

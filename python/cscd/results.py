@@ -86,7 +86,7 @@ class SafeMotion(NamedTuple):
     obstacle_share : float
         The least by which an obstacle, or all, went as a whole; mostly 1.
     rounds, truncations : int
-        How many searches it took (1 if ``x1`` was safe), and after how many of them planes shortened motions.
+        How many rounds of the search for contacts it took, and after how many of them planes shortened motions.
     pushed : int
         On how many pairs of points an impulse acts.
     moved : bool

@@ -113,7 +113,7 @@ static cscd_status prove_remaining_starts(step_work *work) {
 
 static cscd_status hide_pairs(step_work *work) {
     cscd_detector *d = work->detector;
-    if (!config_hides_pairs(&d->config)) return CSCD_OK;
+    if (!config_hides_pairs(&d->config) || d->space.bvh.mesh == NULL) return CSCD_OK;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
     cscd_status status = d->config.stages->hider->hide(d->config.baseline_state, &d->space.bvh, interval->x0,

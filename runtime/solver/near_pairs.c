@@ -66,7 +66,8 @@ static approach approach_of(const division_work *w, const pair_plane *plane, con
 }
 
 static bool vertex_of_obstacle(const cscd_mesh *mesh, uint32_t vertex) {
-    return mesh->objects[cscd_mesh_vertex_object(mesh, vertex)].obstacle;
+    const cscd_object *of = &mesh->objects[cscd_mesh_vertex_object(mesh, vertex)];
+    return of->obstacle || of->kind == CSCD_OBJECT_HALF_SPACE;
 }
 
 /* Returns what a gets of a room that both sides share. */

@@ -7,6 +7,7 @@
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -52,6 +53,7 @@ typedef struct safe_work {
     uint32_t *changed; /* a list of vertices */
     bool any_searched;
     tries tries;
+    double share;         /* of the motion, that this try wants */
     bool truncated;       /* what is wanted is the end of the response */
     bool start_looked_at; /* what touches at x0 is held */
     size_t held_count;
@@ -151,21 +153,43 @@ static cscd_status check_mobile(const safe_work *w) {
 
 /* The end of a motion as far as numbers may go. */
 static double place_coordinate(double x, cscd_scalar scalar) {
-    return stored_coordinate(max_of(-0x1p300, min_of(x, 0x1p300)), scalar);
+    const double most = scalar == CSCD_SCALAR_FLOAT ? (double)FLT_MAX : 0x1p300;
+    return stored_coordinate(max_of(-most, min_of(x, most)), scalar);
 }
 
 static cscd_scalar scalar_of(const safe_work *w, uint32_t object) {
     return w->motion->scalars != NULL ? w->motion->scalars[object] : CSCD_SCALAR_DOUBLE;
 }
 
-/* Makes the share of its motion what an object wants. */
-static void want_share(const safe_work *w, uint32_t object) {
-    const cscd_object *of = &w->detector->mesh->objects[object];
-    const double share = w->shares[object], *x0 = w->motion->x0, *x1 = w->motion->x1;
-    for (size_t i = 3 * (size_t)of->first_vertex; i < 3 * ((size_t)of->first_vertex + of->vertex_count);
-         i++) {
+/* Makes a share of its motion what a vertex of the object wants. */
+static void want_share(const safe_work *w, uint32_t object, size_t vertex, double share) {
+    const double *x0 = w->motion->x0, *x1 = w->motion->x1;
+    for (size_t i = 3 * vertex; i < 3 * vertex + 3; i++) {
         double x = place_coordinate(x0[i] + share * (x1[i] - x0[i]), scalar_of(w, object));
         w->wanted[i] = share == 1.0 ? x1[i] : share == 0.0 ? x0[i] : x;
+    }
+}
+
+static void want_share_of_object(const safe_work *w, uint32_t object) {
+    const cscd_object *of = &w->detector->mesh->objects[object];
+    for (size_t v = of->first_vertex; v < (size_t)of->first_vertex + of->vertex_count; v++)
+        want_share(w, object, v, w->shares[object]);
+}
+
+/* What is sewn to an obstacle goes its share. */
+static void want_share_of_sewn(const safe_work *w) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    const uint32_t count = w->response.names != NULL ? mesh->vertex_count : 0;
+    uint32_t *partners = w->changed;
+    for (uint32_t v = 0; v < count; v++) partners[v] = UINT32_MAX;
+    for (uint32_t v = 0; v < count; v++)
+        if (is_given(mesh, cscd_mesh_vertex_object(mesh, v))) partners[response_name(&w->response, v)] = v;
+    for (uint32_t v = 0; v < count; v++) {
+        const uint32_t partner = partners[response_name(&w->response, v)];
+        const uint32_t object = cscd_mesh_vertex_object(mesh, v);
+        if (partner == UINT32_MAX || is_given(mesh, object)) continue;
+        const double share = w->shares[cscd_mesh_vertex_object(mesh, partner)];
+        if (share < 1.0) want_share(w, object, v, share);
     }
 }
 
@@ -176,13 +200,23 @@ static void place_end(const safe_work *w) {
         size_t first = mesh->objects[o].first_vertex, last = first + mesh->objects[o].vertex_count;
         for (size_t v = first; v < last; v++) {
             const double *shift = w->response.shift + 3 * (size_t)response_name(&w->response, (uint32_t)v);
-            for (size_t k = 0; k < 3; k++)
-                w->end[3 * v + k] = place_coordinate(w->wanted[3 * v + k] + shift[k], scalar_of(w, o));
+            for (size_t k = 0; k < 3; k++) {
+                const double x = w->wanted[3 * v + k];
+                const bool as_wanted = shift[k] == 0.0 && scalar_of(w, o) == CSCD_SCALAR_DOUBLE;
+                w->end[3 * v + k] =
+                    as_wanted ? x : place_coordinate(shift[k] == 0.0 ? x : x + shift[k], scalar_of(w, o));
+            }
         }
     }
 }
 
 /* ---- what touches at the start ------------------------------------------------------------------------- */
+
+static bool differ_in_place(const double *a, const double *b, size_t vertex) {
+    for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
+        if (a[i] != b[i]) return true;
+    return false;
+}
 
 static void hold_vertex(const safe_work *w, uint32_t vertex) {
     const contact_response *r = &w->response;
@@ -194,52 +228,60 @@ static void hold_vertex(const safe_work *w, uint32_t vertex) {
     r->mobilities[name] = 0.0;
 }
 
-static bool has_held_vertex(const safe_work *w, const cscd_object *of) {
-    return memchr(w->kinds + of->first_vertex, CSCD_RESPONSE_HELD, of->vertex_count) != NULL;
+static bool is_held_vertex(const safe_work *w, uint32_t vertex) {
+    return w->kinds[vertex] == CSCD_RESPONSE_HELD;
+}
+
+/* Returns whether that marked any vertex. */
+static bool mark_seams(const safe_work *w) {
+    bool any = false;
+    const uint32_t count = w->response.names != NULL ? w->detector->mesh->vertex_count : 0;
+    for (uint32_t v = 0; v < count; v++)
+        if (is_held_vertex(w, v)) w->kinds[response_name(&w->response, v)] = CSCD_RESPONSE_HELD;
+    for (uint32_t v = 0; v < count; v++) {
+        if (is_held_vertex(w, v) || !is_held_vertex(w, response_name(&w->response, v))) continue;
+        w->kinds[v] = CSCD_RESPONSE_HELD;
+        any = true;
+    }
+    return any;
+}
+
+/* The same. An obstacle that wants to move waits. */
+static bool mark_obstacles(const safe_work *w) {
+    const cscd_mesh *mesh = w->detector->mesh;
+    bool any = false;
+    for (uint32_t o = 0; o < mesh->object_count; o++) {
+        const uint32_t first = mesh->objects[o].first_vertex, last = first + mesh->objects[o].vertex_count;
+        bool held = false, moves = false;
+        if (!is_given(mesh, o)) continue;
+        for (uint32_t v = first; v < last; v++) held |= is_held_vertex(w, v);
+        for (uint32_t v = first; held && v < last; v++) {
+            any |= !is_held_vertex(w, v);
+            moves |= differ_in_place(w->motion->x0, w->motion->x1, v);
+            w->kinds[v] = CSCD_RESPONSE_HELD;
+        }
+        if (moves) w->shares[o] = 0.0;
+    }
+    return any;
 }
 
 /* Vertices of the pairs that touch at x0 stay there, with those of their seam, and with their obstacle. */
 static void hold_touching(const safe_work *w) {
-    const cscd_mesh *mesh = w->detector->mesh;
     const cscd_contact *touching = w->detector->response.held;
     for (size_t i = 0; i < w->held_count; i++) {
         for (int j = 0; j < 4; j++) w->kinds[touching[i].vertices[j]] = CSCD_RESPONSE_HELD;
     }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        if (w->kinds[v] == CSCD_RESPONSE_HELD) w->kinds[response_name(&w->response, v)] = CSCD_RESPONSE_HELD;
+    for (bool any = w->held_count > 0; any;) {
+        any = mark_seams(w);
+        any |= mark_obstacles(w);
     }
-    for (uint32_t o = 0; o < mesh->object_count; o++) {
-        const cscd_object *of = &mesh->objects[o];
-        if (!is_given(mesh, o) || !has_held_vertex(w, of)) continue;
-        memset(w->kinds + of->first_vertex, CSCD_RESPONSE_HELD, of->vertex_count);
-        w->shares[o] = 0.0;
-    }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        if (w->kinds[v] == CSCD_RESPONSE_HELD ||
-            w->kinds[response_name(&w->response, v)] == CSCD_RESPONSE_HELD)
-            hold_vertex(w, v);
-    }
-}
-
-/* Finds the pairs that touch at x0, and holds their vertices. */
-static cscd_status look_at_start(safe_work *w) {
-    cscd_detector *d = w->detector;
-    cscd_contacts touching;
-    cscd_status status =
-        tries_find(&w->tries, w->motion->x0, w->motion->x0, CSCD_MODE_ALL, STEP_BELOW_FLOOR, &touching);
-    w->start_looked_at = true;
-    if (status != CSCD_OK || touching.count == 0) return status;
-    status = grow_list(w, &d->response.held, &d->response.held_size, 0, touching.count, sizeof(cscd_contact));
-    if (status != CSCD_OK) return status;
-    memcpy(d->response.held, touching.items, touching.count * sizeof(cscd_contact));
-    w->held_count = touching.count;
-    hold_touching(w);
-    return CSCD_OK;
+    for (uint32_t v = 0; w->held_count > 0 && v < w->detector->mesh->vertex_count; v++)
+        if (is_held_vertex(w, v)) hold_vertex(w, v);
 }
 
 static bool is_held(const safe_work *w, const cscd_contact *c) {
     for (int j = 0; j < 4; j++) {
-        if (w->kinds[c->vertices[j]] != CSCD_RESPONSE_HELD) return false;
+        if (!is_held_vertex(w, c->vertices[j])) return false;
     }
     return true;
 }
@@ -258,9 +300,10 @@ static void begin_work(safe_work *w, double share) {
     w->rules = config_search_begin(&w->detector->config, &w->detector->space, r->x0, r->x0).interval;
     r->rules = &w->rules;
     r->stop_count = 0;
+    w->share = share;
     for (uint32_t o = 0; o < mesh->object_count; o++) {
         w->shares[o] = share;
-        want_share(w, o);
+        want_share_of_object(w, o);
     }
     memset(r->shift, 0, coordinates * sizeof(double));
     memset(w->kinds, CSCD_RESPONSE_FREE, mesh->vertex_count);
@@ -271,6 +314,23 @@ static void begin_work(safe_work *w, double share) {
     hold_touching(w);
 }
 
+/* Finds the pairs that touch at x0, and begins again with their vertices held. */
+static cscd_status look_at_start(safe_work *w) {
+    cscd_detector *d = w->detector;
+    cscd_contacts touching;
+    cscd_status status =
+        tries_find(&w->tries, w->motion->x0, w->motion->x0, CSCD_MODE_ALL, STEP_BELOW_FLOOR, &touching);
+    w->start_looked_at = true;
+    if (status != CSCD_OK || touching.count == 0) return status;
+    status = grow_list(w, &d->response.held, &d->response.held_size, 0, touching.count, sizeof(cscd_contact));
+    if (status != CSCD_OK) return status;
+    memcpy(d->response.held, touching.items, touching.count * sizeof(cscd_contact));
+    w->held_count = touching.count;
+    begin_work(w, w->share);
+    place_end(w);
+    return CSCD_OK;
+}
+
 /* ---- rounds -------------------------------------------------------------------------------------------- */
 
 /* The response ends after this many rounds, or after fewer when the contacts have not become fewer for a while. */
@@ -278,12 +338,6 @@ enum { ROUNDS = 32, PATIENCE = 6 };
 
 /* Through what is pressed between two obstacles an impulse takes many passes, which are made where fewer did not help. */
 enum { PASSES = 40, PASSES_WITHOUT_SUCCESS = 400 };
-
-static bool differ_in_place(const double *a, const double *b, size_t vertex) {
-    for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
-        if (a[i] != b[i]) return true;
-    return false;
-}
 
 /* Lists the vertices whose end has changed since the last search, or that were in contact then. */
 static uint32_t list_changed(const safe_work *w) {
@@ -405,8 +459,9 @@ static cscd_status divide_pairs(safe_work *w, const cscd_proximities *pairs, dou
         for (uint32_t o = 0; o < d->mesh->object_count; o++) {
             if (!is_given(d->mesh, o) || w->shares[o] == share) continue;
             if (round >= OBSTACLE_ROUNDS) w->shares[o] = 0.0;
-            want_share(w, o);
+            want_share_of_object(w, o);
         }
+        want_share_of_sewn(w);
     }
 }
 
@@ -454,14 +509,24 @@ static cscd_status truncate_rest(safe_work *w, double share, bool *free) {
 
 /* ---- the answer ---------------------------------------------------------------------------------------- */
 
+/* Is the vertex at x1, as it is stored? */
+static bool is_at_end(const safe_work *w, size_t vertex, cscd_scalar scalar) {
+    for (size_t i = 3 * vertex; i < 3 * vertex + 3; i++) {
+        const double x = w->motion->x1[i];
+        if (w->end[i] != (scalar == CSCD_SCALAR_DOUBLE ? x : place_coordinate(x, scalar))) return false;
+    }
+    return true;
+}
+
 static uint8_t kind_of(const safe_work *w, uint32_t vertex) {
-    if (w->kinds[vertex] == CSCD_RESPONSE_HELD) return CSCD_RESPONSE_HELD;
-    const bool waits = w->shares[cscd_mesh_vertex_object(w->detector->mesh, vertex)] < 1.0;
-    if ((waits && differ_in_place(w->end, w->motion->x1, vertex)) ||
-        (w->truncated && differ_in_place(w->end, w->wanted, vertex)))
+    if (is_held_vertex(w, vertex)) return CSCD_RESPONSE_HELD;
+    const uint32_t object = cscd_mesh_vertex_object(w->detector->mesh, vertex);
+    const bool shifted =
+        vec3_largest(w->response.shift + 3 * (size_t)response_name(&w->response, vertex)) > 0.0;
+    if (w->truncated && differ_in_place(w->end, w->wanted, vertex)) return CSCD_RESPONSE_TRUNCATED;
+    if ((!shifted || w->shares[object] < 1.0) && !is_at_end(w, vertex, scalar_of(w, object)))
         return CSCD_RESPONSE_TRUNCATED;
-    const double *shift = w->response.shift + 3 * (size_t)response_name(&w->response, vertex);
-    return vec3_largest(shift) > 0.0 ? CSCD_RESPONSE_STOPPED : CSCD_RESPONSE_FREE;
+    return shifted ? CSCD_RESPONSE_STOPPED : CSCD_RESPONSE_FREE;
 }
 
 /* Returns how much of its wanted motion a vertex has made, along it, from 0 to 1; -1: it wanted none. */
