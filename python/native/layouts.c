@@ -231,8 +231,9 @@ FIELDS(response_options, FIELD(cscd_response_options, struct_size),
        FIELD(cscd_response_options, inverse_masses), FIELD(cscd_response_options, friction))
 FIELDS(safe_motion, FIELD(cscd_safe_motion, responses), FIELD(cscd_safe_motion, response_counts),
        FIELD(cscd_safe_motion, rounds), FIELD(cscd_safe_motion, pushed), FIELD(cscd_safe_motion, mean_share),
-       FIELD(cscd_safe_motion, least_share), FIELD(cscd_safe_motion, obstacle_share),
-       FIELD(cscd_safe_motion, held), FIELD(cscd_safe_motion, held_count), FIELD(cscd_safe_motion, moved))
+       FIELD(cscd_safe_motion, truncations), FIELD(cscd_safe_motion, least_share),
+       FIELD(cscd_safe_motion, obstacle_share), FIELD(cscd_safe_motion, held),
+       FIELD(cscd_safe_motion, held_count), FIELD(cscd_safe_motion, moved))
 FIELDS(pairs, FIELD(cscd_pairs, kind), FIELD(cscd_pairs, point_count), FIELD(cscd_pairs, pair_count),
        FIELD(cscd_pairs, points))
 FIELDS(pair_contact, FIELD(cscd_pair_contact, toi), FIELD(cscd_pair_contact, contact),
