@@ -170,7 +170,7 @@ bool bvh_set_active(bvh *hierarchy, const bool *active) {
 }
 
 const char *bvh_check_active(const bvh *hierarchy, const bool *active) {
-    if (hierarchy->has_inactive != (active != NULL))
+    if (hierarchy->has_inactive != (active != NULL) || (active != NULL && hierarchy->leaf_inactive == NULL))
         return "the trees and their detector have different active sets";
     if (active == NULL) return NULL;
     for (uint32_t i = 0; i < hierarchy->leaf_count; i++) {

@@ -173,6 +173,8 @@ TEST(faults_of_active_sets) {
           "a triangle is not as active as its vertices");
     PLANT(detector_validate, d, d->rebuild.active, NULL,
           "the trees and their detector have different active sets");
+    PLANT(detector_validate, d, hierarchy->has_inactive, false,
+          "the trees and their detector have different active sets");
     PLANT(detector_validate, d, hierarchy->leaf_inactive, NULL,
           "the trees and their detector have different active sets");
     PLANT(detector_validate, d, hierarchy->leaf_inactive[1], (uint8_t)~hierarchy->leaf_inactive[1],
