@@ -71,7 +71,7 @@ class Rig:
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
         options = ["--threads", "1"] if arguments[0] in ("replay", "check", "sense") else []
         done = subprocess.run([self.tool, *arguments, *options], cwd=folder, capture_output=True, text=True, errors="replace",
-                              env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **(environment or {})},
+                              env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **kernels(), **(environment or {})},
                               preexec_fn=set_limit if limit is not None else None, timeout=SECONDS_MAX, check=False)
         return done.returncode, done.stdout, done.stderr
 
@@ -80,6 +80,13 @@ class Rig:
         for name in os.listdir(self.corpus):
             os.symlink(os.path.join(self.corpus, name), os.path.join(folder, name))
         return folder
+
+
+def kernels():
+    """The kernels of OpenBLAS. It does not know every processor, and when memory runs out the tool does not choose better ones for it,
+    whose sums have other bits."""
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        return {"OPENBLAS_CORETYPE": "Haswell"} if " avx2 " in file.read() else {}
 
 
 def contents(folder, names):
