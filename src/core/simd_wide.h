@@ -225,34 +225,33 @@ static inline f64w f64w_all(double x) {
 /* Lane i of out[k] is the k-th of four doubles at rows[i]; and back. */
 #if SIMD_LEVEL == SIMD_AVX512
 
+/* Of each half. */
+static inline void f64w_transpose(f64w r[4]) {
+    f64w pairs[4];
+    for (int i = 0; i < 2; i++) {
+        pairs[i] = __builtin_shufflevector(r[2 * i], r[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        pairs[2 + i] = __builtin_shufflevector(r[2 * i], r[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int i = 0; i < 2; i++) {
+        r[i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13);
+        r[2 + i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+}
+
 static inline void f64w_load_quads(const double *const rows[WIDTH], f64w out[4]) {
-    f64w pairs[4], q[4];
     for (int i = 0; i < 4; i++) {
         f64x4 low, high;
         memcpy(&low, rows[i], sizeof low);
         memcpy(&high, rows[4 + i], sizeof high);
-        q[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+        out[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
     }
-    for (int i = 0; i < 2; i++) {
-        pairs[i] = __builtin_shufflevector(q[2 * i], q[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-        pairs[2 + i] = __builtin_shufflevector(q[2 * i], q[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-    }
-    for (int i = 0; i < 2; i++) {
-        out[i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13);
-        out[2 + i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
+    f64w_transpose(out);
 }
 
 static inline void f64w_store_quads(const f64w v[4], double *const rows[WIDTH]) {
-    f64w pairs[4], q[4];
-    for (int i = 0; i < 2; i++) {
-        pairs[i] = __builtin_shufflevector(v[2 * i], v[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-        pairs[2 + i] = __builtin_shufflevector(v[2 * i], v[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-    }
-    for (int i = 0; i < 2; i++) {
-        q[i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 0, 1, 8, 9, 4, 5, 12, 13);
-        q[2 + i] = __builtin_shufflevector(pairs[2 * i], pairs[2 * i + 1], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
+    f64w q[4];
+    memcpy(q, v, sizeof q);
+    f64w_transpose(q);
     for (int i = 0; i < 4; i++) {
         f64x4 low = __builtin_shufflevector(q[i], q[i], 0, 1, 2, 3);
         f64x4 high = __builtin_shufflevector(q[i], q[i], 4, 5, 6, 7);
