@@ -216,19 +216,25 @@ class Detector(LiveSettings):
             self._find(host, views, options)
             return bool(self._lists["intersections"]["count"][0])
 
-    def overlap_volumes(self, x: Any) -> Measures:
+    def overlap_volumes(self, x: Any) -> Any:
         """The volumes that bodies have in common at positions ``x``, and how they change with every vertex.
 
-        Of a body with itself it is the integral of (winding number - 1) where that is above 1. Values are NaN where an open
-        surface is in a body or crosses one. Bodies are parts that are closed by themselves, or objects (``set_parts``).
+        They are ``Measures``; of a batch, an array (b, n, 3), a list of b of them. Of a body with itself it is the integral
+        of (winding number - 1) where that is above 1. Values are NaN where an open surface is in a body or crosses one.
+        Bodies are parts that are closed by themselves, or objects (``set_parts``).
         """
         return self._measures(library.cscdpy_detector_overlap_volumes, x)
 
-    def curve_lengths(self, x: Any) -> Measures:
-        """The lengths of the intersection curves of bodies, open ones, too, at positions ``x``, and how they change."""
+    def curve_lengths(self, x: Any) -> Any:
+        """The lengths of the intersection curves of bodies, open ones, too, at positions ``x``, and how they change.
+
+        They are ``Measures``; of a batch, an array (b, n, 3), a list of b of them.
+        """
         return self._measures(library.cscdpy_detector_curve_lengths, x)
 
-    def _measures(self, function: Any, x: Any) -> Measures:
+    def _measures(self, function: Any, x: Any) -> Any:
+        if isinstance(x, np.ndarray) and x.ndim == 3:
+            return [self._measures(function, one) for one in x]
         options = self._find_options(2**64 - 1, 0, False, False, False)
         views, kept = self._views("x", x)
         found = new_struct("measures")

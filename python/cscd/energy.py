@@ -137,11 +137,10 @@ class Energy:
 
     def at(self, detector: Detector, x: Any) -> Tuple[Any, Array]:
         """The value and the gradient at ``x`` (n, 3), whose near pairs a detector finds; or of a batch (b, n, 3)."""
-        array = np.asarray(x)
-        if array.ndim == 3:
-            parts = [self.at(detector, one) for one in array]
+        if isinstance(x, np.ndarray) and x.ndim == 3:
+            parts = [self.at(detector, one) for one in x]
             return (np.array([value for value, _ in parts]),
-                    np.array([gradient for _, gradient in parts]).reshape(array.shape))
+                    np.array([gradient for _, gradient in parts]).reshape(x.shape))
         found = self.evaluate(x, detector.near(x, float(self._options["reach"][0]), unique=True,
                                                beyond=bool(self._options["beyond"][0])))
         return found.value, found.gradient

@@ -67,6 +67,18 @@ def test_apart() -> None:
     assert len(found) == 0 and found.sum == 0.0 and not found.gradient.any() and found.bodies.shape == (0, 2)
 
 
+def test_batches_are_lists() -> None:
+    """A batch is an array; a list of arrays of one size is still the objects of one scene."""
+    detector = detector_of_boxes()
+    batch = np.stack([boxes([0.5, 0.25, 0.75]), boxes([2.0, 0.0, 0.0]), boxes([0.25, 0.25, 0.25])])
+    for measure in (detector.overlap_volumes, detector.curve_lengths):
+        alone = [measure(x) for x in batch]
+        together = measure(batch)
+        assert [found.sum for found in together] == [found.sum for found in alone]
+        assert all(np.array_equal(a.gradient, b.gradient) for a, b in zip(together, alone))
+        assert measure([batch[0, :8], batch[0, 8:]]).sum == alone[0].sum and measure(batch[:0]) == []
+
+
 def test_descent_parts_bodies() -> None:
     """A few steps against the gradient, and the boxes are apart."""
     detector = detector_of_boxes()
