@@ -161,7 +161,7 @@ MODEL_PARTS     := $(wildcard models/*/*.c)
 CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
 CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/thesis.c benchmarks/thesis_figures.c benchmarks/volumes.c) $(if $(HAS_SENSORS),,benchmarks/sensors.c),$(wildcard benchmarks/*.c))
-BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c $(if $(HAS_SENSORS),benchmarks/sensors/*.c sensors/tool/object_pairs.c)))
+BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c benchmarks/untangle/*.c $(if $(HAS_SENSORS),benchmarks/sensors/*.c sensors/tool/object_pairs.c)))
 PEER_SOURCES      := $(wildcard benchmarks/peers/*.c benchmarks/peers/*.cpp)
 SOURCES := $(CORE_SOURCES) $(BASELINE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(NATIVE_SOURCES) $(SUPPORT_SOURCES) $(ROOM_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS) \
