@@ -32,7 +32,10 @@ static cscd_status make_detector(const tangle_scene *s, cscd_context *context, c
         objects[i].obstacle = s->obstacles[i];
     }
     cscd_status status = cscd_mesh_create(context, objects, s->object_count, mesh);
-    if (status == CSCD_OK) status = cscd_detector_create(context, *mesh, NULL, NULL, detector);
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seams = s->seams;
+    options.seam_count = s->seam_count;
+    if (status == CSCD_OK) status = cscd_detector_create(context, *mesh, NULL, &options, detector);
     return status;
 }
 

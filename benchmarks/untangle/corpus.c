@@ -79,6 +79,7 @@ static const made_row made_rows[] = {
     {"spike", TANGLE_CLOTH, tangle_make_spike, 6, 2},
     {"tubes", TANGLE_CLOTH, tangle_make_tubes, 9, 3},
     {"drape", TANGLE_CLOTH, tangle_make_drape, 6, 2},
+    {"bag", TANGLE_CLOTH, tangle_make_bag, 4, 2},
     {"stack", TANGLE_FLUSH, tangle_make_stack, 12, 2},
     {"wall", TANGLE_FLUSH, tangle_make_wall, 4, 2},
     {"aligned", TANGLE_FLUSH, tangle_make_aligned, 6, 2},

@@ -97,7 +97,7 @@ bool tangle_make_worm(uint32_t triangle_count, uint32_t seed, tangle_scene *s, i
     return end_tube(s, 16.0, bend_worm, &w);
 }
 
-/* A hook: one end bends back until it is in the middle. */
+/* A hook: one end bends back until it is in the middle. The other end of every second hook is pinned. */
 typedef struct hook {
     double from, to, angle, turn;
 } hook;
@@ -117,7 +117,9 @@ bool tangle_make_hook(uint32_t triangle_count, uint32_t seed, tangle_scene *s, i
                     .turn = tangle_random(&state, -0.1, 0.1)};
     (void)error;
     body_add_rod(tangle_add_object(s), triangle_count, tangle_random(&state, 0.5, 0.8), 18.0);
-    return end_tube(s, 16.0, bend_hook, &h);
+    if (!end_tube(s, 16.0, bend_hook, &h)) return false;
+    if (seed % 2 == 0) tangle_pin_below(s, 3.0);
+    return true;
 }
 
 /* A ring that closes: both ends meet. */
@@ -192,7 +194,8 @@ static void bend_all(const void *user, double t, double p[3]) {
     for (int i = 0; i < all->count; i++) bend_point(&all->bends[i], t, p);
 }
 
-/* Fingers bend at two joints until they are in the palm and the ball of the thumb. */
+/* Fingers bend at two joints until they are in the palm and the ball of the thumb. The wrist of every second hand is
+ * pinned. */
 bool tangle_make_hand(uint32_t triangle_count, uint32_t seed, tangle_scene *s, io_error *error) {
     uint64_t state = tangle_seed(1400 + seed);
     const double side = seed % 2 == 0 ? 1.0 : -1.0;
@@ -200,7 +203,10 @@ bool tangle_make_hand(uint32_t triangle_count, uint32_t seed, tangle_scene *s, i
         .count = 2,
         .bends = {{2, 1, 0.92, 0.25, side * tangle_random(&state, 0.9, 1.5), 0.0, false, -1.0, 9.0, 2},
                   {2, 1, 0.5, 0.45, side * tangle_random(&state, 2.9, 3.5), 0.0, false, -1.0, 9.0, 2}}};
-    return tangle_add_body(s, BODY_HAND, triangle_count, error) && end_sequence(s, bend_all, &fist);
+    if (!tangle_add_body(s, BODY_HAND, triangle_count, error) || !end_sequence(s, bend_all, &fist))
+        return false;
+    if (seed % 2 == 0) tangle_pin_below(s, 0.3);
+    return true;
 }
 
 /* Arms curl up along the way from the axis, into mantle and each other; some more than others. */

@@ -1,12 +1,14 @@
-/* Scenes of open cloth: sheets through each other, ribbons that roll into themselves, tubes in tubes, cloth through an
- * obstacle. */
+/* Scenes of open cloth: sheets through each other, ribbons that roll into themselves, tubes in tubes, a bag with seams, cloth
+ * through an obstacle. */
 #include "benchmarks/untangle/tangle_scene.h"
+
+#include "models/cloth/cloth_scene.h"
 
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
 
-enum { RIBBON_FRAMES = 24 };
+enum { RIBBON_FRAMES = 24, BAG_FRAMES = 16 };
 
 static bool end_moment(tangle_scene *s) {
     tangle_begin_frames(s, 1);
@@ -171,6 +173,29 @@ bool tangle_make_tubes(uint32_t triangle_count, uint32_t seed, tangle_scene *s, 
         body_move(&s->objects[1], tangle_random(&state, 0.25, 0.35), 0.0, tangle_random(&state, -0.2, 0.2));
     }
     return end_moment(s);
+}
+
+/* A bag of two panels, sewn together, one of which is dented until it has gone through the other. */
+bool tangle_make_bag(uint32_t triangle_count, uint32_t seed, tangle_scene *s, io_error *error) {
+    uint64_t state = tangle_seed(3600 + seed);
+    const uint32_t columns = (2 + (uint32_t)lround(sqrt(triangle_count / 4.0))) | 1u;
+    const double depth = 0.1, x = tangle_random(&state, -0.15, 0.15), z = tangle_random(&state, 0.1, 0.35),
+                 dent = depth * tangle_random(&state, 3.0, 4.0), width = tangle_random(&state, 0.1, 0.18);
+    (void)error;
+    garment_add_bag(tangle_add_object(s), columns, columns, 0.8, 0.8, depth);
+    s->seams = garment_bag_seams(columns, columns, &s->seam_count);
+    tangle_begin_frames(s, BAG_FRAMES);
+    for (uint32_t f = 0; f < BAG_FRAMES; f++) {
+        for (uint32_t v = 0; v < columns * columns; v++) {
+            double *p = s->frames + ((size_t)f * s->vertex_count + v) * 3;
+            const double side = fmax(0.0, 1.0 - 6.25 * p[0] * p[0]), up = fmax(0.0, 1.0 - p[2] / 0.8);
+            const double squared = (p[0] - x) * (p[0] - x) + (p[2] - z) * (p[2] - z);
+            p[1] += dent * f / (BAG_FRAMES - 1) * exp(-squared / (width * width)) * fmin(1.0, 4.0 * side) *
+                    fmin(1.0, 4.0 * up);
+        }
+    }
+    tangle_round_frames(s);
+    return true;
 }
 
 /* A sheet that lies too low on a ball, which is an obstacle; its corners may be pinned. */

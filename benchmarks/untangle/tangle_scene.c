@@ -14,6 +14,7 @@ void tangle_scene_free(tangle_scene *s) {
     free(s->triangles);
     free(s->frames);
     free(s->weights);
+    free(s->seams);
     *s = (tangle_scene){.object_count = 0};
 }
 
@@ -49,6 +50,12 @@ void tangle_begin_frames(tangle_scene *s, uint32_t frame_count) {
     }
     for (uint32_t f = 1; f < frame_count; f++)
         memcpy(s->frames + f * size, s->frames, size * sizeof *s->frames);
+}
+
+void tangle_pin_below(tangle_scene *s, double height) {
+    s->weights = body_allocate(s->vertex_count, sizeof *s->weights);
+    for (size_t v = 0; v < s->vertex_count; v++)
+        s->weights[v] = s->frames[3 * v + 2] < height ? INFINITY : 1.0;
 }
 
 void tangle_round_frames(tangle_scene *s) {

@@ -32,8 +32,9 @@ typedef struct tangle_scene {
     uint32_t vertex_count, triangle_count;
     uint32_t *triangles; /* of all objects, by the vertices of all */
     uint32_t frame_count;
-    double *frames;  /* frame_count * vertex_count * 3, in single precision */
-    double *weights; /* per vertex; INFINITY pins it; NULL: 1 each */
+    double *frames;              /* frame_count * vertex_count * 3, in single precision */
+    double *weights;             /* per vertex; INFINITY pins it; NULL: 1 each */
+    uint32_t *seams, seam_count; /* pairs of vertices that are sewn together */
 } tangle_scene;
 
 void tangle_scene_free(tangle_scene *s);
@@ -50,6 +51,9 @@ bool tangle_add_body(tangle_scene *s, body_kind kind, uint32_t triangle_count, i
 
 /* When all objects are there: gives the scene so many frames, each as the objects begin. */
 void tangle_begin_frames(tangle_scene *s, uint32_t frame_count);
+
+/* When it has frames: pins all vertices that are below a height in the first one. */
+void tangle_pin_below(tangle_scene *s, double height);
 
 /* At last: rounds all frames to single precision. */
 void tangle_round_frames(tangle_scene *s);
@@ -95,4 +99,4 @@ tangle_maker tangle_make_worm, tangle_make_hook, tangle_make_coil, tangle_make_r
     tangle_make_knot;
 tangle_maker tangle_make_elbow, tangle_make_finger, tangle_make_waist, tangle_make_spikes;
 tangle_maker tangle_make_layers, tangle_make_ribbon, tangle_make_flap, tangle_make_spike, tangle_make_tubes,
-    tangle_make_drape;
+    tangle_make_drape, tangle_make_bag;
