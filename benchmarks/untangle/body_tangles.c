@@ -263,11 +263,11 @@ bool tangle_make_copies(uint32_t triangle_count, uint32_t seed, tangle_scene *s,
 
 /* Letters on each other: their flat sides meet. */
 bool tangle_make_letters(uint32_t triangle_count, uint32_t seed, tangle_scene *s, io_error *error) {
-    static const body_kind kinds[] = {BODY_LETTER_T, BODY_LETTER_U, BODY_LETTER_V, BODY_LETTER_W};
+    static const body_kind kinds[] = {BODY_LETTER_T, BODY_LETTER_U};
     const uint32_t count = 2 + seed % 2;
     for (uint32_t i = 0; i < count; i++) {
-        if (!tangle_add_body(s, kinds[(seed + i) % 4], triangle_count / count, error)) return false;
-        body_move(&s->objects[i], 0.1 * i, 0.5 * i, 0.05 * i);
+        if (!tangle_add_body(s, kinds[(seed + i) % 2], triangle_count / count, error)) return false;
+        body_move(&s->objects[i], 0.1 * i, 0.5 * i, 0.02 * (seed % 4) * i);
     }
     return end_moment(s);
 }

@@ -90,7 +90,7 @@ static void bend_worm(const void *user, double t, double s, double curvature[2])
 bool tangle_make_worm(uint32_t triangle_count, uint32_t seed, tangle_scene *s, io_error *error) {
     uint64_t state = tangle_seed(1000 + seed);
     const double radius = tangle_random(&state, 0.35, 0.5);
-    worm w = {.most = 18.0};
+    worm w = {.most = 26.0};
     (void)error;
     for (int i = 0; i < 2; i++) w.waves[i] = tangle_random_waves(&state, 0.7);
     body_add_rod(tangle_add_object(s), triangle_count, radius, 16.0 + 2.0 * radius);

@@ -32,7 +32,7 @@ static body *add_sheet(tangle_scene *s, uint32_t triangle_count) {
 bool tangle_make_layers(uint32_t triangle_count, uint32_t seed, tangle_scene *s, io_error *error) {
     uint64_t state = tangle_seed(3000 + seed);
     const uint32_t count = 2 + seed % 4;
-    const double gap = tangle_random(&state, 0.03, 0.06);
+    const double gap = tangle_random(&state, 0.015, 0.035);
     (void)error;
     for (uint32_t i = 0; i < count; i++) {
         body *b = add_sheet(s, triangle_count / count);
@@ -76,7 +76,7 @@ bool tangle_make_ribbon(uint32_t triangle_count, uint32_t seed, tangle_scene *s,
     (void)error;
     body_add_grid(tangle_add_object(s), 8 * columns, columns, 8.0, 1.0);
     tangle_begin_frames(s, RIBBON_FRAMES);
-    roll_ribbon(s, &w, tangle_random(&state, 5.0, 7.5), tangle_random(&state, 0.0, 0.1));
+    roll_ribbon(s, &w, tangle_random(&state, 7.5, 10.0), tangle_random(&state, 0.0, 0.1));
     tangle_round_frames(s);
     return true;
 }

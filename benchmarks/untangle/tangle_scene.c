@@ -169,10 +169,12 @@ static uint64_t advance_state(uint64_t *state) {
     return *state >> 11;
 }
 
+/* The finalizer of splitmix64: seeds that follow each other give states that have nothing in common. */
 uint64_t tangle_seed(uint32_t seed) {
     uint64_t state = 0x9e3779b97f4a7c15u * (seed + UINT64_C(1));
-    for (int i = 0; i < 8; i++) advance_state(&state);
-    return state;
+    state = (state ^ state >> 30) * 0xbf58476d1ce4e5b9u;
+    state = (state ^ state >> 27) * 0x94d049bb133111ebu;
+    return state ^ state >> 31;
 }
 
 double tangle_random(uint64_t *state, double low, double high) {
