@@ -14,6 +14,7 @@ void block_system_free(block_system *s) {
     context_free(s->context, s->last_entries);
     context_free(s->context, s->values);
     context_free(s->context, s->targets);
+    context_free(s->context, s->target_begins);
     context_free(s->context, s->factors.factors);
     context_free(s->context, s->factors.updates);
     context_free(s->context, s->factors.scratch);
@@ -109,34 +110,61 @@ static void find_slots(const block_system *s, slot_draft *d) {
     }
 }
 
-static block_target target_of(const front_tree *t, const block_slot *slot) {
-    const uint32_t a = t->places[slot->row], b = t->places[slot->column], first = a < b ? a : b;
-    const matrix_front *front = &t->fronts[t->front_of[first]];
-    const size_t row = first - front->first, column = front_tree_find(t, front, a < b ? b : a);
-    return (block_target){front->factor + front->unit * (row * front->stride + column), front->stride, b < a,
-                          front->unit == 3};
+/* ---- targets ------------------------------------------------------------------------------------------------- */
+
+static uint32_t front_of_slot(const front_tree *t, const block_slot *slot) {
+    const uint32_t a = t->places[slot->row], b = t->places[slot->column];
+    return t->front_of[a < b ? a : b];
 }
 
-/* ---- factors ------------------------------------------------------------------------------------------------- */
+static block_target target_of_slot(const front_tree *t, const block_slot *slot) {
+    const uint32_t a = t->places[slot->row], b = t->places[slot->column];
+    const matrix_front *front = &t->fronts[front_of_slot(t, slot)];
+    const size_t row = (a < b ? a : b) - front->first, column = front_tree_find(t, front, a < b ? b : a);
+    return (block_target){.place = front->factor + front->unit * (row * front->stride + column),
+                          .stride = (uint32_t)front->stride,
+                          .is_transposed = b < a,
+                          .is_block = front->unit == 3};
+}
+
+static void write_targets(block_system *s, const slot_draft *d, block_target *of_slots) {
+    size_t *ends = s->target_begins + 1, *begins = s->target_begins;
+    for (size_t f = 0; f <= s->tree.front_count; f++) begins[f] = 0;
+    for (size_t k = 0; k < d->slot_count; k++) of_slots[k] = target_of_slot(&s->tree, &d->slots[k]);
+    for (size_t e = 0; e < s->entry_count; e++) ends[front_of_slot(&s->tree, &d->slots[d->slot_of[e]])]++;
+    for (uint32_t f = 0; f < s->tree.front_count; f++) begins[f + 1] += begins[f];
+    for (size_t e = s->entry_count; e-- > 0;) {
+        const uint32_t slot = d->slot_of[e];
+        block_target *target = &s->targets[--ends[front_of_slot(&s->tree, &d->slots[slot])]];
+        *target = of_slots[slot];
+        target->source = s->entries[e].place;
+    }
+    /* Now ends[f] is where front f begins. */
+    for (uint32_t f = 0; f < s->tree.front_count; f++) begins[f] = begins[f + 1];
+    begins[s->tree.front_count] = s->entry_count;
+}
 
 static cscd_status renew_targets(block_system *s, const slot_draft *d) {
+    const size_t room = room_with_spare(s->entry_count), begin_count = (size_t)s->tree.front_count + 1;
     block_target *of_slots;
-    if (!context_renew_all(s->context, (array_list){{ARRAY(s->targets, room_with_spare(s->entry_count))}},
-                           &s->target_capacity, s->entry_count) ||
-        !context_renew_all(s->context,
-                           (array_list){{ARRAY(s->last_entries, room_with_spare(s->entry_count))}},
-                           &s->last_capacity, s->entry_count))
+    if (!context_renew_all(s->context, (array_list){{ARRAY(s->targets, room)}}, &s->target_capacity,
+                           s->entry_count) ||
+        !context_renew_all(s->context, (array_list){{ARRAY(s->last_entries, room)}}, &s->last_capacity,
+                           s->entry_count) ||
+        !context_renew_all(s->context, (array_list){{ARRAY(s->target_begins, room_with_spare(begin_count))}},
+                           &s->begin_capacity, begin_count))
         return context_out_of_memory(s->context);
     of_slots = context_reserve(s->context, d->slot_count, sizeof *of_slots);
     if (of_slots == NULL) return context_out_of_memory(s->context);
-    for (size_t k = 0; k < d->slot_count; k++) of_slots[k] = target_of(&s->tree, &d->slots[k]);
-    for (size_t e = 0; e < s->entry_count; e++) s->targets[e] = of_slots[d->slot_of[e]];
+    write_targets(s, d, of_slots);
     context_free(s->context, of_slots);
     if (s->entry_count > 0) memcpy(s->last_entries, s->entries, s->entry_count * sizeof *s->entries);
     s->last_count = s->entry_count;
     s->has_tree = true;
     return CSCD_OK;
 }
+
+/* ---- factors ------------------------------------------------------------------------------------------------- */
 
 static bool pattern_is_kept(const block_system *s) {
     return s->has_tree && s->tree.row_count == s->row_count && s->last_count == s->entry_count &&
@@ -172,37 +200,43 @@ static bool renew_factors(block_system *s) {
                &s->row_capacity, rows);
 }
 
-static void sum_entries(block_system *s) {
-    memset(s->factors.factors, 0, s->tree.factor_size * sizeof *s->factors.factors);
-    for (size_t e = 0; e < s->entry_count; e++) {
-        const block_target *target = &s->targets[e];
-        const double *values = s->values + s->entries[e].place / 2;
+/* Writes the rows of a front's pivots, as the matrix has them. */
+static void sum_entries(block_system *s, uint32_t number) {
+    const matrix_front *front = &s->tree.fronts[number];
+    double *rows = s->factors.factors + front->factor;
+    memset(rows, 0, front->unit * front->pivot_count * front->stride * sizeof *rows);
+    for (size_t k = s->target_begins[number]; k < s->target_begins[number + 1]; k++) {
+        const block_target *target = &s->targets[k];
+        const double *values = s->values + target->source / 2;
         double *to = s->factors.factors + target->place;
-        if (s->entries[e].place % 2 != 0) {
-            for (size_t k = 0; k < (target->is_block ? 3 : 1); k++) to[k * target->stride + k] += values[0];
+        if (target->source % 2 != 0) {
+            for (size_t e = 0; e < (target->is_block ? 3 : 1); e++) to[e * target->stride + e] += values[0];
         } else if (target->is_transposed) {
-            for (size_t k = 0; k < 9; k++) to[k % 3 * target->stride + k / 3] += values[k];
+            for (size_t e = 0; e < 9; e++) to[e % 3 * target->stride + e / 3] += values[e];
         } else {
-            for (size_t k = 0; k < 9; k++) to[k / 3 * target->stride + k % 3] += values[k];
+            for (size_t e = 0; e < 9; e++) to[e / 3 * target->stride + e % 3] += values[e];
         }
     }
 }
 
 cscd_status block_system_factor(block_system *s) {
-    cscd_status status = pattern_is_kept(s) ? CSCD_OK : analyse_pattern(s);
+    const cscd_status status = pattern_is_kept(s) ? CSCD_OK : analyse_pattern(s);
     if (status != CSCD_OK) return status;
     if (!renew_factors(s)) return context_out_of_memory(s->context);
-    s->factors.tree = &s->tree;
-    sum_entries(s);
-    status = front_factors_make(s->context, &s->factors);
+    front_factors_begin(&s->factors);
+    for (uint32_t f = 0; f < s->tree.front_count; f++) {
+        if (progress_cancelled(&s->context->progress)) return context_explain(s->context, CSCD_CANCELLED);
+        sum_entries(s, f);
+        front_factors_add(&s->factors, s->context, &s->tree, f);
+    }
     s->replaced = s->factors.replaced;
-    return status;
+    return CSCD_OK;
 }
 
 void block_system_solve(const block_system *s, double *x) {
     for (size_t i = 0; i < s->row_count; i++)
         memcpy(s->ordered + 3 * (size_t)s->tree.places[i], x + 3 * i, sizeof(double[3]));
-    front_factors_solve(&s->factors, s->ordered);
+    front_factors_solve(&s->factors, &s->tree, s->ordered);
     for (size_t i = 0; i < s->row_count; i++)
         memcpy(x + 3 * i, s->ordered + 3 * (size_t)s->tree.places[i], sizeof(double[3]));
 }

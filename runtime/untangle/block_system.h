@@ -11,9 +11,11 @@ typedef struct block_entry {
         place; /* of its first number among the values, times 2, and 1 more for a number times the identity */
 } block_entry;
 
-/* Where a term stands among the rows of pivots. */
+/* Where a term goes. */
 typedef struct block_target {
-    size_t place, stride;
+    size_t place;    /* among the rows of pivots */
+    uint64_t source; /* the entry's place */
+    uint32_t stride;
     bool is_transposed, is_block; /* is_block: else one number stands for three */
 } block_target;
 
@@ -37,10 +39,11 @@ typedef struct block_system {
     size_t value_count, value_capacity;
 
     front_tree tree;
-    block_target *targets; /* of entries */
+    block_target *targets; /* of entries, by front, and then in the order of the entries */
+    size_t *target_begins; /* of fronts */
     size_t target_capacity;
     front_factors factors;
-    size_t factor_capacity, update_capacity, row_capacity;
+    size_t factor_capacity, update_capacity, row_capacity, begin_capacity;
     double *ordered; /* a right side in the order of elimination */
     bool has_tree;
 } block_system;

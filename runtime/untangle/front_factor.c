@@ -10,7 +10,7 @@
 /* ---- pivots -------------------------------------------------------------------------------------------------- */
 
 /* A pivot that is this much smaller than the diagonal of the matrix is rounding. */
-static const double least_pivot = 0x1p-50;
+static const double least_pivot = 0x1p-46;
 
 /* Cholesky factorisation as modified for matrices that are not definite: a pivot of such a row is replaced by the largest magnitude in
  * it, or of its diagonal in the matrix. Then what the row takes off any other row is at most what it has there. */
@@ -145,8 +145,7 @@ static void add_child(front_work *w, const matrix_front *front, const matrix_fro
 }
 
 /* Adds the updates of all children, the last one first. */
-static void add_children(const front_factors *f, front_work *w, uint32_t number) {
-    const front_tree *t = f->tree;
+static void add_children(const front_factors *f, const front_tree *t, front_work *w, uint32_t number) {
     uint32_t *locals = f->locals, *found = f->locals + t->row_count;
     const matrix_front *front = &t->fronts[number];
     const uint32_t first = number - front->descendants;
@@ -161,31 +160,44 @@ static void add_children(const front_factors *f, front_work *w, uint32_t number)
     }
 }
 
-cscd_status front_factors_make(cscd_context *context, front_factors *f) {
-    const front_tree *t = f->tree;
-    size_t height = 0;
-    front_work w = {.kernels = KERNELS_OF(context, front_kernels), .diagonal = f->scratch};
-    for (uint32_t i = 0; i < t->front_count; i++) {
-        const matrix_front *front = &t->fronts[i];
-        w.pivots = (size_t)front->unit * front->pivot_count;
-        w.all = (size_t)front->unit * front->row_count;
-        w.stride = front->stride;
-        w.update_stride = front->update_stride;
-        w.rows = f->factors + front->factor;
-        w.update = f->updates + height;
-        for (size_t k = 0; k < w.pivots; k++) w.diagonal[k] = w.rows[k * w.stride + k];
-        const size_t size = (w.all - w.pivots) * w.update_stride;
-        memset(w.update, 0, size * sizeof *w.update);
-        if (front->descendants > 0) add_children(f, &w, i);
-        const size_t before = w.replaced;
-        factor_front(&w);
-        if (front->unit == 1) w.replaced += 2 * (w.replaced - before); /* each stands for three */
-        memmove(f->updates + front->update, w.update, size * sizeof *w.update);
-        height = front->update + size;
-        if (progress_cancelled(&context->progress)) return context_explain(context, CSCD_CANCELLED);
+/* Of an update's square the rows above the diagonal are used, from where groups of numbers begin. */
+static void clear_update(const front_work *w) {
+    for (size_t i = 0; i < w->all - w->pivots; i++) {
+        const size_t column = align_down(i);
+        memset(w->update + i * w->update_stride + column, 0, (w->update_stride - column) * sizeof *w->update);
     }
-    f->replaced = w.replaced;
-    return CSCD_OK;
+}
+
+/* Towards lower addresses, row after row, so that no row is overwritten before its turn. */
+static void move_update(const front_work *w, double *to) {
+    for (size_t i = 0; i < w->all - w->pivots && to != w->update; i++) {
+        const size_t at = i * w->update_stride + align_down(i);
+        memmove(to + at, w->update + at, (w->update_stride - align_down(i)) * sizeof *to);
+    }
+}
+
+void front_factors_begin(front_factors *f) {
+    f->height = f->replaced = 0;
+}
+
+void front_factors_add(front_factors *f, const cscd_context *context, const front_tree *tree,
+                       uint32_t number) {
+    const matrix_front *front = &tree->fronts[number];
+    front_work w = {.kernels = KERNELS_OF(context, front_kernels),
+                    .rows = f->factors + front->factor,
+                    .update = f->updates + f->height,
+                    .pivots = (size_t)front->unit * front->pivot_count,
+                    .all = (size_t)front->unit * front->row_count,
+                    .stride = front->stride,
+                    .update_stride = front->update_stride,
+                    .diagonal = f->scratch};
+    for (size_t k = 0; k < w.pivots; k++) w.diagonal[k] = w.rows[k * w.stride + k];
+    clear_update(&w);
+    if (front->descendants > 0) add_children(f, tree, &w, number);
+    factor_front(&w);
+    move_update(&w, f->updates + front->update);
+    f->height = front->update + (w.all - w.pivots) * w.update_stride;
+    f->replaced += front->unit == 1 ? 3 * w.replaced : w.replaced; /* the number stands for three */
 }
 
 /* ---- solution ------------------------------------------------------------------------------------------------ */
@@ -240,8 +252,7 @@ static void solve_back(const matrix_front *front, const double *rows, double *x)
     }
 }
 
-void front_factors_solve(const front_factors *f, double *x) {
-    const front_tree *tree = f->tree;
+void front_factors_solve(const front_factors *f, const front_tree *tree, double *x) {
     double *scratch = f->scratch;
     for (uint32_t i = 0; i < tree->front_count; i++) {
         const matrix_front *front = &tree->fronts[i];

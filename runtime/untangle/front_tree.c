@@ -182,13 +182,10 @@ static size_t count_entries(size_t pivots, size_t rows) {
     return pivots * rows - pivots * (pivots - 1) / 2;
 }
 
-/* Small fronts cost more than their operations, so the smaller they are, the more zeros are worth it. */
+/* Small fronts cost more than their operations, so the smaller they are, the more zeros are worth it: 0.4 of the entries where there
+ * are four pivots. */
 static bool merging_pays(size_t pivots, size_t zeros, size_t entries) {
-    const double share = (double)zeros / (double)entries;
-    return pivots <= 4    ? share < 0.6
-           : pivots <= 16 ? share < 0.2
-           : pivots <= 48 ? share < 0.08
-                          : share < 0.02;
+    return (double)zeros * (double)pivots < 1.6 * (double)entries;
 }
 
 /* Merges nodes with their parents where that pays. An owner is a later node, the last of those that are merged. */
