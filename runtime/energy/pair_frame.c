@@ -131,7 +131,7 @@ static void normal_of_touch(const cscd_proximity *item, pair_frame *f) {
 
 void pair_frame_find(const cscd_proximity *item, const double *x, pair_frame *f) {
     const double *points[4];
-    double apart[3], inverses[2], squares[2];
+    double apart[3], inverses[2] = {0.0, 0.0}, squares[2];
     for (int i = 0; i < 4; i++) points[i] = x + (size_t)item->vertices[i] * 3;
     f->straight = false;
     memcpy(f->weights, item->weights, sizeof f->weights);
