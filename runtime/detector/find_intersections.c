@@ -421,8 +421,8 @@ static cscd_status ask_of_views(cscd_detector *d, const cscd_view *positions, ki
     return status == CSCD_OK ? ask_moment(d, x, question) : status;
 }
 
-static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
-                                 const cscd_intersection_options *options, cscd_intersections *out) {
+cscd_status detector_find_intersections(cscd_detector *d, const cscd_view *positions,
+                                        const cscd_intersection_options *options, cscd_intersections *out) {
     cscd_context *context = d->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_intersections: out is NULL");
@@ -440,7 +440,7 @@ cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, find_in_views(detector, positions, options, out));
+    return context_leave(&entry, detector_find_intersections(detector, positions, options, out));
 }
 
 /* ---- measures ------------------------------------------------------------------------------------------ */

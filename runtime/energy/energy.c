@@ -54,7 +54,7 @@ static const char *validate_listed(const reference_count *object) {
     return NULL;
 }
 
-static cscd_status create_energy(cscd_context *context, const cscd_mesh *mesh, cscd_energy **out) {
+cscd_status energy_create(cscd_context *context, const cscd_mesh *mesh, cscd_energy **out) {
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_energy_create: out is NULL");
     cscd_energy *e = context_allocate(context, 1, sizeof *e);
     if (e == NULL) return context_out_of_memory(context);
@@ -71,7 +71,7 @@ cscd_status cscd_energy_create(cscd_context *context, const cscd_mesh *mesh, csc
     if (context == NULL || mesh == NULL) return context_lacks(context, "cscd_energy_create", "mesh");
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
-    return context_leave(&entry, create_energy(context, mesh, out));
+    return context_leave(&entry, energy_create(context, mesh, out));
 }
 
 void cscd_energy_destroy(cscd_energy *energy) {
@@ -201,9 +201,9 @@ static energy_terms terms_of_friction(const cscd_energy *e, const friction_motio
         sizeof *e->frozen};
 }
 
-static cscd_status evaluate_items(cscd_energy *e, const cscd_proximities *items, const cscd_view *positions,
-                                  const cscd_energy_options *options, const cscd_energy_targets *targets,
-                                  cscd_energy_sum *out) {
+cscd_status energy_evaluate(cscd_energy *e, const cscd_proximities *items, const cscd_view *positions,
+                            const cscd_energy_options *options, const cscd_energy_targets *targets,
+                            cscd_energy_sum *out) {
     near_terms near = {.kernels = energy_kernels_of(e->context)};
     const bool written =
         targets != NULL && (targets->gradient != NULL || targets->blocks != NULL || targets->matrix != NULL);
@@ -230,7 +230,7 @@ cscd_status cscd_energy_evaluate(cscd_energy *energy, const cscd_proximities *it
     if (energy == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(energy, &entry)) return entry.status;
-    return context_leave(&entry, evaluate_items(energy, items, positions, options, targets, out));
+    return context_leave(&entry, energy_evaluate(energy, items, positions, options, targets, out));
 }
 
 /* ---- patterns ------------------------------------------------------------------------------------------ */

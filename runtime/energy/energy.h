@@ -5,6 +5,13 @@
 #include "src/core/kernels.h"
 #include "src/mesh/mesh.h"
 
+/* ---- the calls of the API, within a call ----------------------------------------------------------------- */
+
+cscd_status energy_create(cscd_context *context, const cscd_mesh *mesh, cscd_energy **out);
+cscd_status energy_evaluate(cscd_energy *e, const cscd_proximities *items, const cscd_view *positions,
+                            const cscd_energy_options *options, const cscd_energy_targets *targets,
+                            cscd_energy_sum *out);
+
 /* ---- laws ---------------------------------------------------------------------------------------------- */
 
 /* A function of one variable, with two derivatives. */

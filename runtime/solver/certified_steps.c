@@ -121,8 +121,8 @@ static cscd_status max_step_between(cscd_detector *d, const double *x0, const do
     return status;
 }
 
-static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                     const cscd_mutable_view *reached, cscd_free_step *out) {
+cscd_status solver_max_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                            const cscd_mutable_view *reached, cscd_free_step *out) {
     cscd_context *context = detector->context;
     const cscd_mesh *mesh = detector->mesh;
     if (out == NULL)
@@ -146,7 +146,7 @@ cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0,
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, max_step_of_views(detector, x0, x1, reached, out));
+    return context_leave(&entry, solver_max_step(detector, x0, x1, reached, out));
 }
 
 /* ==== of a line search ===================================================================================== */

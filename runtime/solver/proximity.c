@@ -220,8 +220,8 @@ static cscd_status find_near_at(cscd_detector *d, const double *positions, doubl
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }
 
-static cscd_status find_near_views(cscd_detector *detector, const cscd_view *positions, double distance,
-                                   cscd_near_form form, cscd_proximities *out) {
+cscd_status solver_find_near(cscd_detector *detector, const cscd_view *positions, double distance,
+                             cscd_near_form form, cscd_proximities *out) {
     cscd_context *context = detector->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_near: out is NULL");
@@ -241,5 +241,5 @@ cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *po
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, find_near_views(detector, positions, distance, form, out));
+    return context_leave(&entry, solver_find_near(detector, positions, distance, form, out));
 }

@@ -613,9 +613,9 @@ static cscd_status make_safe_between(cscd_detector *d, const straight_motion *m,
     return CSCD_OK;
 }
 
-static cscd_status make_safe_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                   const cscd_response_options *options, const cscd_mutable_view *reached,
-                                   cscd_safe_motion *out) {
+cscd_status solver_make_safe(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                             const cscd_response_options *options, const cscd_mutable_view *reached,
+                             cscd_safe_motion *out) {
     static const char function[] = "cscd_detector_make_safe";
     cscd_context *context = detector->context;
     const cscd_mesh *mesh = detector->mesh;
@@ -645,5 +645,5 @@ cscd_status cscd_detector_make_safe(cscd_detector *detector, const cscd_view *x0
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, make_safe_views(detector, x0, x1, options, reached, out));
+    return context_leave(&entry, solver_make_safe(detector, x0, x1, options, reached, out));
 }

@@ -4,6 +4,16 @@
 #include "runtime/detector/detector.h"
 #include "runtime/solver/free_step.h"
 
+/* ---- the calls of the API, within a call ----------------------------------------------------------------- */
+
+cscd_status solver_find_near(cscd_detector *detector, const cscd_view *positions, double distance,
+                             cscd_near_form form, cscd_proximities *out);
+cscd_status solver_max_step(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                            const cscd_mutable_view *reached, cscd_free_step *out);
+cscd_status solver_make_safe(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                             const cscd_response_options *options, const cscd_mutable_view *reached,
+                             cscd_safe_motion *out);
+
 /* ---- near pairs ---------------------------------------------------------------------------------------- */
 
 /* Returns INVALID_ARGUMENT, with a sentence, unless this is a form of the list. */

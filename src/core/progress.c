@@ -30,12 +30,21 @@ void progress_begin_call(progress *p) {
 }
 
 void progress_begin(progress *p) {
-    if (!progress_wanted(p)) return;
+    if (!progress_wanted(p) || p->held != NULL) return;
     p->caller = pthread_self();
     p->asked_ms = timer_now_ms();
     p->reported = 0.0;
     progress_part(p, 0.0, 1.0);
     progress_stage(p, "", 0.0, 1.0);
+}
+
+void progress_hold(progress *p, const char *stage, double share) {
+    p->held = stage;
+    p->held_share = share;
+}
+
+void progress_let_go(progress *p) {
+    p->held = NULL;
 }
 
 void progress_part(progress *p, double begin, double end) {
@@ -65,12 +74,13 @@ void progress_leave(progress *p, progress_outer outer) {
 static void advance_report(progress *p, double share) {
     double part = p->begin + (p->end - p->begin) * share;
     double fraction = fmin(1.0, p->part_begin + (p->part_end - p->part_begin) * part);
+    if (p->held != NULL) fraction = p->held_share;
     if (fraction > p->reported) p->reported = fraction;
 }
 
 static bool ask_host(progress *p) {
     host_call call = host_call_begin(p->entry);
-    bool go_on = p->host.report(p->host.user, p->stage, p->reported);
+    bool go_on = p->host.report(p->host.user, p->held != NULL ? p->held : p->stage, p->reported);
     host_call_end(&call);
     return go_on;
 }

@@ -17,6 +17,8 @@ typedef struct progress {
     double part_begin, part_end; /* the share of the call that the present part takes */
     double begin, end;           /* the share of that part that the stage takes */
     double reported;             /* never falls */
+    const char *held; /* the stage of a call that makes others, which say nothing; NULL: there is none */
+    double held_share;
     atomic_bool cancelled;
     bool by_report; /* report has cancelled the call, and not cscd_context_cancel */
 } progress;
@@ -36,6 +38,11 @@ void progress_begin_call(progress *p);
 
 /* Begins a call that asks the host now and then, as every call that can end with CSCD_CANCELLED. */
 void progress_begin(progress *p);
+
+/* A call that makes other calls of the library says where it stands itself: until it lets go, their stages and parts count for nothing,
+ * and their beginnings begin nothing. The share is that of the whole call. */
+void progress_hold(progress *p, const char *stage, double share);
+void progress_let_go(progress *p);
 
 /* The following stages take the call from begin to end, by estimate; without this, the whole call. */
 void progress_part(progress *p, double begin, double end);
