@@ -67,6 +67,7 @@
 #include <cscd/plan.h>
 #include <cscd/solver.h>
 #include <cscd/surface.h>
+#include <cscd/untangle.h>
 
 #define CSCD_VERSION_MAJOR 2
 #define CSCD_VERSION_MINOR 0

@@ -6,6 +6,7 @@
 #include <cscd/live.h>
 #include <cscd/mesh_change.hpp>
 #include <cscd/plan.hpp>
+#include <cscd/untangle.h>
 
 /* Some hosts, as the Unreal Engine, have a macro of this name. */
 #pragma push_macro("check")
@@ -251,6 +252,16 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         const cscd_mutable_view *end = reached.covering(object_count());
         cscd_safe_motion found{};
         call([&] { return cscd_detector_make_safe(get(), from, to, &options, end, &found); });
+        return found;
+    }
+
+    /* reached may be x. */
+    cscd_untangled untangle(const positions &x, const mutable_positions &reached,
+                            const cscd_untangle_options &options = cscd_untangle_defaults()) {
+        const cscd_view *from = covering(x);
+        const cscd_mutable_view *end = reached.covering(object_count());
+        cscd_untangled found{};
+        call([&] { return cscd_detector_untangle(get(), from, &options, end, &found); });
         return found;
     }
 

@@ -21,8 +21,9 @@ from .pairs import pairs_near, pairs_step
 from .plan import ComparedPlan, Plan
 from .questions import contacts, intersections, is_self_intersecting, self_intersecting_faces, self_intersections
 from .replay import Frame, Replay, replay
-from .results import (CONTACT_KINDS, INTERSECTION_KINDS, RESPONSES, Contacts, Events, PairContacts, PairDistances,
-                      Proximities, SafeMotion)
+from .results import (CONTACT_KINDS, INTERSECTION_KINDS, RESPONSES, UNTANGLE_STARTS, Contacts, Events, PairContacts,
+                      PairDistances, Proximities, SafeMotion, Untangled)
+from .untangling import untangle, untangle_frames
 
 __version__: str = _library.cscd_version_string().decode()
 
@@ -30,6 +31,6 @@ __all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "D
            "Error", "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact",
            "Intersections", "LineSearch", "ListTooLong", "Measures", "Mesh", "PairContacts", "PairDistances",
            "PartPairs", "Plan", "Points", "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene",
-           "TetSurface", "Wires", "__version__", "contacts", "intersections", "is_self_intersecting", "pairs_near",
-           "pairs_step", "read", "replay", "self_intersecting_faces", "self_intersections", "tet_surface",
-           "write_report"]
+           "TetSurface", "UNTANGLE_STARTS", "Untangled", "Wires", "__version__", "contacts", "intersections",
+           "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay", "self_intersecting_faces",
+           "self_intersections", "tet_surface", "untangle", "untangle_frames", "write_report"]

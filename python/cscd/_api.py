@@ -45,6 +45,7 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "cscd_response_defaults_sized": (None, [c_void_p, c_size_t]),
     "cscd_status_string": (c_char_p, [c_uint32]),
     "cscd_tet_surface_destroy": (None, [c_void_p]),
+    "cscd_untangle_defaults_sized": (None, [c_void_p, c_size_t]),
     "cscd_version_string": (c_char_p, []),
 }
 
@@ -181,6 +182,10 @@ VALUES: Dict[str, int] = {
     "CSCD_TRIANGLE_COMPONENTS": 2,
     "CSCD_TRIANGLE_EDGES": 1,
     "CSCD_TRIANGLE_VERTICES": 0,
+    "CSCD_UNTANGLE_GIVEN": 1,
+    "CSCD_UNTANGLE_NO_START": 0,
+    "CSCD_UNTANGLE_PUSHED": 2,
+    "CSCD_UNTANGLE_SHRUNK": 3,
     "CSCD_VERSION_MAJOR": 2,
     "CSCD_VERTICES": 0,
     "CSCD_VOLUMES": 3,

@@ -19,7 +19,7 @@ from .live import LiveSettings
 from .measures import Measures
 from .mesh import Mesh
 from .plan import Plan
-from .results import RESPONSES, Contacts, Proximities, SafeMotion, copy_records, near_form
+from .results import RESPONSES, Contacts, Proximities, SafeMotion, Untangled, copy_records, near_form
 
 __all__ = ["Detector"]
 
@@ -345,6 +345,49 @@ class Detector(LiveSettings):
             host.call(library.cscdpy_detector_make_safe, self._detector, address_of(start), address_of(end),
                       address_of(options), address_of(target), address_of(found))
             return reached, SafeMotion.of(found[0], self.mesh.vertex_count)
+
+    def untangle(self, x: Any, *, start: Any = None, start_input: Any = None, steady: float = 0.0, weights: Any = None,
+                 spread: float = 0.0, max_seconds: float = np.inf, max_rounds: int = 60, max_steps: int = 40,
+                 out: Optional[Array] = None) -> Untangled:
+        """Finds positions near ``x`` at which nothing intersects; the result is never worse (include/cscd/untangle.h).
+
+        Parameters
+        ----------
+        start : (n, 3), optional
+            Clean positions to start from, as those of the frame before; the result is then always clean.
+        start_input : (n, 3), optional
+            The positions that ``start`` was the result for, and ``steady`` in [0, 1) says how far its displacement goes on.
+        weights : (n,) floats, optional
+            How strongly each vertex is drawn to ``x``; above 0, and ``inf`` pins it. 1 each by default.
+        spread : float
+            The length over which displacements are spread; 0: about twice the thickness of what intersects.
+        max_seconds : float
+            Then the call ends with the best so far.
+        max_rounds, max_steps : int
+            Rounds of pushing, and steps of the descent, for each start that is tried.
+        out : (n, 3) float32 or float64, packed, optional
+            Where the positions are written. By default an array of the type of ``x``.
+        """
+        views, kept = self._views("x", x)
+        reached = self._positions_for("out", out, kept)
+        target = mutable_view(reached)
+        options = new_struct("untangle_options")
+        library.cscd_untangle_defaults_sized(address_of(options), options.nbytes)
+        numbers = as_numbers("weights", weights, self.mesh.vertex_count)
+        given = [self._views(name, value) if value is not None else None
+                 for name, value in (("start", start), ("start_input", start_input))]
+        options["weights"] = 0 if numbers is None else address_of(numbers)
+        options["start"], options["start_input"] = [0 if one is None else address_of(one[0]) for one in given]
+        options["steady"], options["spread"] = number_of("steady", steady), number_of("spread", spread)
+        options["max_seconds"] = max_seconds
+        options["max_rounds"] = count_of("max_rounds", max_rounds, 2**32 - 1)
+        options["max_steps"] = count_of("max_steps", max_steps, 2**32 - 1)
+        found = new_struct("untangled")
+        host = self._host
+        with host.lock:
+            host.call(library.cscdpy_detector_untangle, self._detector, address_of(views), address_of(options),
+                      address_of(target), address_of(found))
+        return Untangled.of(found[0], reached)
 
     def line_search(self, x0: Any, x1: Any, reach: float = 0.0) -> LineSearch:
         """One motion for many questions; ``reach``: the largest distance for which ``near`` is called."""

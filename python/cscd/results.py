@@ -115,6 +115,67 @@ class SafeMotion(NamedTuple):
                    int(found["pushed"]), bool(found["moved"]), held)
 
 
+#: The clean positions from which a result comes, by the codes of the library.
+UNTANGLE_STARTS = ("none", "given", "pushed", "shrunk")
+
+
+class Untangled(NamedTuple):
+    """The findings of ``Detector.untangle``.
+
+    Attributes
+    ----------
+    vertices : (n, 3)
+        The positions that were found; the input itself where nothing better was.
+    clean : bool
+        Nothing intersects in these numbers, and all pairs keep what they have to.
+    moved : bool
+        Some vertex is not where it was.
+    stopped : bool
+        ``max_seconds`` or ``progress`` ended the call before it was done.
+    pairs_before, pairs_after : int
+        How many pairs of triangles intersect.
+    near_before, near_after : int
+        How many other pairs are nearer than they have to keep.
+    moved_vertices, farthest : int
+        How many vertices moved, and the first of those that moved farthest; -1: none.
+    displacement, mean_displacement : float
+        How far it moved, and the mean of those that moved.
+    thickness : float
+        About how deep the parts were in each other; 0: not known.
+    start : str
+        A name of ``UNTANGLE_STARTS``.
+    rounds, steps : int
+        Rounds of pushing, and steps of the descent.
+    """
+
+    vertices: Any
+    clean: bool
+    moved: bool
+    stopped: bool
+    pairs_before: int
+    pairs_after: int
+    near_before: int
+    near_after: int
+    moved_vertices: int
+    farthest: int
+    displacement: float
+    mean_displacement: float
+    thickness: float
+    start: str
+    rounds: int
+    steps: int
+
+    @classmethod
+    def of(cls, found: Any, vertices: Any) -> Untangled:
+        """Copies the findings out of the library."""
+        farthest = int(found["farthest"])
+        return cls(vertices, bool(found["clean"]), bool(found["moved"]), bool(found["stopped"]),
+                   int(found["pairs_before"]), int(found["pairs_after"]), int(found["near_before"]),
+                   int(found["near_after"]), int(found["moved_vertices"]), -1 if farthest == 2**32 - 1 else farthest,
+                   float(found["displacement"]), float(found["mean_displacement"]), float(found["thickness"]),
+                   UNTANGLE_STARTS[int(found["start"])], int(found["rounds"]), int(found["steps"]))
+
+
 class Proximities(Records):
     """Pairs of features that are near each other at one moment, sorted by (kind, a, b).
 

@@ -74,6 +74,10 @@ CALL_OF(detector_make_safe,
         (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
          const cscd_response_options *options, const cscd_mutable_view *reached, cscd_safe_motion *out),
         cscd_detector_make_safe(detector, x0, x1, options, reached, out))
+CALL_OF(detector_untangle,
+        (host * h, cscd_detector *detector, const cscd_view *positions, const cscd_untangle_options *options,
+         const cscd_mutable_view *reached, cscd_untangled *out),
+        cscd_detector_untangle(detector, positions, options, reached, out))
 CALL_OF(detector_contact_parts,
         (host * h, cscd_detector *detector, const cscd_contact *contacts, size_t contact_count,
          cscd_contact_part_pairs *out),

@@ -18,3 +18,4 @@
 #define LEAST_cscd_sensor_options       STRUCT_THROUGH(cscd_sensor_options, seed)
 #define LEAST_cscd_response_options     STRUCT_THROUGH(cscd_response_options, friction)
 #define LEAST_cscd_intersection_options STRUCT_THROUGH(cscd_intersection_options, max_work)
+#define LEAST_cscd_untangle_options     STRUCT_THROUGH(cscd_untangle_options, max_seconds)

@@ -321,6 +321,16 @@ TEST(motions) {
     assert_int_equal(cscd::held_pairs(safe).size(), 0);
 }
 
+TEST(untangling) {
+    twins t;
+    std::vector<float> reached(t.x0.size()), expected(t.x0.size());
+    const cscd_mutable_view out = cscd::view_of(expected);
+    cscd_untangled found;
+    assert_int_equal(cscd_detector_untangle(t.c, &t.v1, nullptr, &out, &found), CSCD_OK);
+    assert_true(t.ours.untangle(t.x1, reached).pairs_after == found.pairs_after);
+    assert_true(reached == expected && found.moved == (found.pairs_before > 0));
+}
+
 TEST(bounds) {
     twins t;
     std::vector<float> floats(t.mesh.vertex_count()), expected(floats.size());

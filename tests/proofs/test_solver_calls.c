@@ -98,6 +98,31 @@ static const proof_call safe_motion = {"detector_make_safe", PROOF_ASKS, make_mo
 static const proof_call max_step = {"detector_max_step", PROOF_ASKS, go_free, read_step};
 static const proof_call truncation = {"detector_truncate", PROOF_ASKS, truncate_motion, read_truncation};
 
+/* Where the host cancels, the answer is the best so far, which is another one. */
+static cscd_status untangle_moment(proof *p) {
+    static double best[SCENE_VERTICES_MAX * 3];
+    const cscd_mutable_view end = cscd_mutable_view_doubles(best, p->shape.vertex_count);
+    cscd_view x;
+    cscd_untangled found;
+    cscd_untangle_options options = cscd_untangle_defaults();
+    options.max_rounds = 3;
+    options.max_steps = 2;
+    const cscd_status status =
+        cscd_detector_untangle(p->detector, at_moment(p, 3, &x), &options, &end, &found);
+    if (status != CSCD_OK) return status;
+    if (found.stopped) return CSCD_CANCELLED;
+    memcpy(p->reached, best, p->shape.vertex_count * sizeof(double[3]));
+    p->answer.untangled = found;
+    return CSCD_OK;
+}
+
+static void read_untangled(proof *p) {
+    proof_add(p, &p->answer.untangled, sizeof p->answer.untangled);
+    read_reached(p);
+}
+
+static const proof_call untangling = {"detector_untangle", PROOF_ASKS, untangle_moment, read_untangled};
+
 /* ---- a line --------------------------------------------------------------------------------------------- */
 
 static cscd_status create_line(proof *p) {
@@ -197,6 +222,11 @@ static const proof_row rows[] = {
     {"max_step", {&max_step}, open_detector, .family = SCENE_TWO_SPHERES},
     {"truncation", {&truncation}, open_detector, .family = SCENE_TWO_SPHERES},
     {"safe motion", {&safe_motion}, open_detector, .family = SCENE_TWO_SPHERES},
+    {"untangling",
+     {&untangling},
+     open_detector,
+     .family = SCENE_TWO_SPHERES,
+     .allocates = "the memory of one call may be large, and is given back"},
     {"line",
      {&line_create, &line_begin, &line_list, &line_near, &line_step, &line_again},
      open_detector,

@@ -90,6 +90,7 @@ typedef struct proof {
         cscd_displacement_bounds bounds;
         cscd_truncation truncation;
         cscd_safe_motion safe;
+        cscd_untangled untangled;
         cscd_contact_part_pairs part_pairs;
         cscd_events events;
         void *words[8]; /* of a row whose types are not known here */
