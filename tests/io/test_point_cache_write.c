@@ -128,6 +128,11 @@ TEST(refuses_a_wrong_number_of_frames) {
     assert_false(point_cache_writer_close(writer, NULL));
     check_gone(path.text);
     assert_true(point_cache_writer_close(NULL, &error));
+    writer = open_writer(path.text, VERTICES, 1);
+    assert_true(point_cache_writer_write(writer, positions, &error));
+    point_cache_writer_abandon(writer);
+    point_cache_writer_abandon(NULL);
+    check_gone(path.text);
 }
 
 static void check_open_fails(const char *path, uint32_t vertex_count, uint32_t frame_count,
@@ -207,6 +212,88 @@ TEST(leaves_devices_alone) {
     assert_false(point_cache_writer_close(writer, NULL));
     struct stat status;
     assert_int_equal(lstat(path.text, &status), 0);
+}
+
+/* A frame of which every coordinate says which it is. */
+static void write_numbered(point_cache_writer *writer, uint32_t frame, double value) {
+    io_error error;
+    for (uint32_t i = 0; i < VERTICES * 3; i++) positions[i] = value;
+    assert_true(point_cache_writer_seek(writer, frame, &error));
+    assert_true(point_cache_writer_write(writer, positions, &error));
+}
+
+/* The values of the frames of a file, and what they are called. */
+static void check_frames(const char *path, uint32_t count, const double *values, int32_t first,
+                         int32_t step) {
+    animation *opened = frame_fixture_open(path, VERTICES);
+    assert_int_equal(animation_frame_count(opened), count);
+    for (uint32_t i = 0; i < count; i++) {
+        io_error error;
+        assert_true(animation_read(opened, i, positions, &error));
+        assert_int_equal(animation_frame_number(opened, i), first + (int32_t)i * step);
+        for (uint32_t k = 0; k < VERTICES * 3; k++) assert_true(positions[k] == values[i]);
+    }
+    animation_close(opened);
+}
+
+TEST(writes_frames_in_any_order) {
+    static const double expected[FRAMES] = {10, 21, 12, 13};
+    static const char *const names[] = {"cache.pc2", "cache.mdd"};
+    for (size_t i = 0; i < 2; i++) {
+        const temp_path path = temp_file_path(&own_folder, names[i]);
+        point_cache_writer *writer = open_writer(path.text, VERTICES, FRAMES);
+        io_error error;
+        assert_true(point_cache_writer_number(writer, 60, 2, &error));
+        write_numbered(writer, 2, 12);
+        write_numbered(writer, 3, 13);
+        write_numbered(writer, 1, 11);
+        write_numbered(writer, 0, 10);
+        write_numbered(writer, 1, 21); /* once more */
+        assert_true(point_cache_writer_keep(writer, 0, FRAMES, &error));
+        assert_true(point_cache_writer_close(writer, &error));
+        check_frames(path.text, FRAMES, expected, i == 0 ? 60 : 0, i == 0 ? 2 : 1);
+    }
+}
+
+TEST(keeps_a_part_of_the_frames) {
+    static const double expected[2] = {11, 12};
+    static const char *const names[] = {"cache.pc2", "cache.mdd"};
+    for (size_t i = 0; i < 2; i++) {
+        const temp_path path = temp_file_path(&own_folder, names[i]);
+        point_cache_writer *writer = open_writer(path.text, VERTICES, FRAMES);
+        io_error error;
+        assert_true(point_cache_writer_number(writer, -3, 1, &error));
+        write_numbered(writer, 2, 12);
+        write_numbered(writer, 1, 11);
+        assert_true(point_cache_writer_keep(writer, 1, 2, &error));
+        assert_true(point_cache_writer_close(writer, &error));
+        check_frames(path.text, 2, expected, i == 0 ? -2 : 0, 1);
+    }
+}
+
+/* What a float does not hold is not said. */
+TEST(leaves_out_numbers_that_a_header_cannot_hold) {
+    static const double expected[1] = {1};
+    const temp_path path = temp_file_path(&own_folder, "cache.pc2");
+    point_cache_writer *writer = open_writer(path.text, VERTICES, 1);
+    io_error error;
+    assert_true(point_cache_writer_number(writer, (1 << 24) + 1, 1, &error));
+    write_numbered(writer, 0, 1);
+    assert_true(point_cache_writer_close(writer, &error));
+    check_frames(path.text, 1, expected, 0, 1);
+}
+
+/* A device has no places. */
+TEST(fails_where_frames_cannot_be_put_in_order) {
+    const temp_path path = temp_file_path(&own_folder, "full.pc2");
+    assert_int_equal(symlink("/dev/full", path.text), 0);
+    point_cache_writer *writer = open_writer(path.text, VERTICES, FRAMES);
+    io_error error = {""};
+    for (uint32_t i = 0; i < VERTICES * 3; i++) positions[i] = 0;
+    assert_true(point_cache_writer_write(writer, positions, &error));
+    assert_false(point_cache_writer_keep(writer, 0, 1, &error));
+    assert_non_null(strstr(error.text, "full.pc2: cannot"));
+    assert_false(point_cache_writer_close(writer, &error));
 }
 
 AROUND_EACH(make_folder, own_folder_remove)

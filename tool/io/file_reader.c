@@ -182,6 +182,7 @@ static bool begins_comment(const file_reader *reader) {
 bool text_next_token(file_reader *reader, text_token *token) {
     skip_blanks(reader);
     size_t start = reader->at;
+    reader->mark = start;
     if (!begins_comment(reader))
         while (!ends_word(reader)) reader->at++;
     *token = (text_token){reader->bytes + start, reader->at - start};
@@ -256,6 +257,12 @@ bool text_number(file_reader *reader, const char *expected, double *value) {
     return text_parse_number(token, value) ||
            file_reader_fail_here(reader, "found '%s', expected %s%s", text_show(token).text, expected,
                                  text_number_advice(token));
+}
+
+bool text_coordinate(file_reader *reader, int axis, const char *expected, double *value) {
+    if (!text_number(reader, expected, value)) return false;
+    reader->coordinates[axis] = (coordinate_place){COORDINATE_TEXT, reader->mark, reader->at - reader->mark};
+    return true;
 }
 
 bool text_integer(file_reader *reader, const char *expected, int64_t *value) {

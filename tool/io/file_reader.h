@@ -9,18 +9,31 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Where a coordinate of a vertex stands in a file, and how. */
+typedef struct coordinate_place {
+    enum {
+        COORDINATE_NOWHERE, /* it is made of something else, or of an integer */
+        COORDINATE_TEXT,
+        COORDINATE_LITTLE, /* a float or double, by its size, of that byte order */
+        COORDINATE_BIG
+    } form;
+    size_t at, size; /* bytes */
+} coordinate_place;
+
 typedef struct file_reader {
     const char *path; /* the caller's, alive as long as the reader */
     io_error *error;
     char *bytes; /* `size` bytes, and a 0 behind the last */
     size_t size;
-    size_t at;              /* the next byte to read */
-    size_t line;            /* the line of `at`, from 1 */
-    bool binary;            /* places are byte offsets, not lines */
-    size_t mark;            /* in binary files: the first byte of the value last read */
-    bool comments;          /* text: # starts a comment */
-    bool continuations;     /* text: a backslash before a line's end is a blank */
-    mesh_parts_by parts_by; /* of meshes: what their parts are */
+    size_t at;                       /* the next byte to read */
+    size_t line;                     /* the line of `at`, from 1 */
+    bool binary;                     /* places are byte offsets, not lines */
+    size_t mark;                     /* the first byte of the value last read */
+    bool comments;                   /* text: # starts a comment */
+    bool continuations;              /* text: a backslash before a line's end is a blank */
+    mesh_parts_by parts_by;          /* of meshes: what their parts are */
+    coordinate_place coordinates[3]; /* of meshes: of the vertex that is read */
+    growable *places;                /* takes these three of all vertices; NULL: nobody asks */
 } file_reader;
 
 /* On false *reader owns nothing. */
@@ -66,6 +79,9 @@ bool text_seek_token(file_reader *reader);
 /* Take the line's next token as a number. On false the error names the token and what was expected. */
 bool text_number(file_reader *reader, const char *expected, double *value);
 bool text_integer(file_reader *reader, const char *expected, int64_t *value);
+
+/* The same of a coordinate of a vertex, whose place is kept. */
+bool text_coordinate(file_reader *reader, int axis, const char *expected, double *value);
 
 /* Checks that the line ends here. */
 bool text_expect_line_end(file_reader *reader);

@@ -21,6 +21,9 @@ typedef struct format_reader {
     bool (*read)(file_reader *reader, mesh_file *out);
 } format_reader;
 
+/* Reads the mesh of a file that was opened, by the reader of its format, as mesh_file_read. */
+bool mesh_reader_read(file_reader *reader, mesh_file *out);
+
 /* Wavefront OBJ: vertices and polygons; all other records are skipped. */
 extern const format_reader obj_reader;
 /* PLY (Stanford polygon format), text and binary of either byte order. Coordinates keep the precision of the

@@ -55,7 +55,10 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]) {
     double *vertex = push_item(builder, &builder->positions, "vertices");
     if (vertex == NULL) return false;
     memcpy(vertex, position, 3 * sizeof *vertex);
-    return true;
+    if (builder->reader->places == NULL) return true;
+    void *places = push_item(builder, builder->reader->places, "vertices");
+    if (places != NULL) memcpy(places, builder->reader->coordinates, sizeof builder->reader->coordinates);
+    return places != NULL;
 }
 
 static bool find_part(mesh_builder *builder, mesh_parts *parts, const char *name, size_t length,

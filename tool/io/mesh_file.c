@@ -211,6 +211,12 @@ static void count_triangles_as_faces(mesh_file *mesh) {
         mesh->faces_hash = mesh_file_hash(mesh->faces_hash, mesh->triangles + (size_t)t * 3, 3);
 }
 
+bool mesh_reader_read(file_reader *reader, mesh_file *out) {
+    const bool done = read_any(reader, out);
+    if (done) count_triangles_as_faces(out);
+    return done;
+}
+
 bool mesh_file_read(const char *path, mesh_file *out, io_error *error) {
     return mesh_file_read_parts(path, MESH_PARTS_BY_FILE, out, error);
 }
@@ -219,8 +225,7 @@ bool mesh_file_read_parts(const char *path, mesh_parts_by parts_by, mesh_file *o
     file_reader reader;
     if (!file_reader_open(&reader, path, error)) return false;
     reader.parts_by = parts_by;
-    bool done = read_any(&reader, out);
-    if (done) count_triangles_as_faces(out);
+    const bool done = mesh_reader_read(&reader, out);
     file_reader_close(&reader);
     return done;
 }

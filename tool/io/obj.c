@@ -25,7 +25,7 @@ static bool read_vertex(obj_parser *obj) {
                                          "coordinate z of the vertex"};
     double position[3];
     for (int axis = 0; axis < 3; axis++) {
-        if (!text_number(obj->reader, names[axis], &position[axis])) return false;
+        if (!text_coordinate(obj->reader, axis, names[axis], &position[axis])) return false;
     }
     /* The rest of the line is a weight or a colour. */
     return mesh_builder_add_vertex(&obj->builder, position);

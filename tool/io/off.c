@@ -127,11 +127,14 @@ static bool read_vertex(file_reader *reader, off_kind kind, double position[3]) 
                                          "coordinate z of a vertex"};
     double divisor;
     for (int axis = 0; axis < 3; axis++) {
-        if (!text_number(reader, names[axis], &position[axis])) return false;
+        if (!text_coordinate(reader, axis, names[axis], &position[axis])) return false;
     }
     if (!kind.homogeneous) return true;
     if (!text_number(reader, "the fourth coordinate of a vertex", &divisor)) return false;
-    for (int axis = 0; axis < 3 && divisor != 1; axis++) position[axis] /= divisor;
+    for (int axis = 0; axis < 3 && divisor != 1; axis++) {
+        position[axis] /= divisor;
+        reader->coordinates[axis].form = COORDINATE_NOWHERE;
+    }
     return true;
 }
 

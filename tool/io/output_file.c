@@ -51,7 +51,7 @@ static int create_temporary(output_file *f) {
         snprintf(name, sizeof name, ".cscd-output-%ld-%d", (long)getpid(), i);
         f->temporary = name_beside(f->target, name);
         if (f->temporary == NULL) return -1;
-        int descriptor = open(f->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        int descriptor = open(f->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) return descriptor;
         int cause = errno;
         free(f->temporary);
@@ -74,11 +74,11 @@ static bool open_temporary(output_file *f, const struct stat *replaced) {
     if (descriptor < 0) {
         /* The file may be written where its folder may not: it is then written itself. */
         bool only_in_place = replaced != NULL && (errno == EACCES || errno == EPERM || errno == EROFS);
-        f->file = only_in_place ? fopen(f->target, "wb") : NULL;
+        f->file = only_in_place ? fopen(f->target, "w+b") : NULL;
         return f->file != NULL;
     }
     if (replaced == NULL || fchmod(descriptor, replaced->st_mode & 07777) == 0)
-        f->file = fdopen(descriptor, "wb");
+        f->file = fdopen(descriptor, "w+b");
     if (f->file != NULL) return true;
     int cause = errno;
     close(descriptor);

@@ -10,7 +10,7 @@
 #include <sys/types.h>
 
 typedef struct output_file {
-    FILE *file;
+    FILE *file;       /* of regular files what was written can be read, too */
     char *target;     /* where symbolic links lead */
     char *temporary;  /* in its folder; NULL: the target is a pipe or a device, and written to itself */
     off_t whole_size; /* bytes up to the last flush */

@@ -482,13 +482,26 @@ static bool read_corners(ply_parser *ply, const ply_property *property) {
     return mesh_builder_end_face(&ply->builder);
 }
 
+/* A number of a text is at the reader's mark, too. */
+static bool read_coordinate(ply_parser *ply, const ply_property *property) {
+    file_reader *reader = ply->data.reader;
+    const ply_encoding encoding = ply->data.header.encoding;
+    if (!ply_data_number(&ply->data, property, &ply->position[property->role])) return false;
+    coordinate_place *place = &reader->coordinates[property->role];
+    *place = (coordinate_place){COORDINATE_TEXT, reader->mark, reader->at - reader->mark};
+    if (encoding == PLY_LITTLE_ENDIAN) place->form = COORDINATE_LITTLE;
+    if (encoding == PLY_BIG_ENDIAN) place->form = COORDINATE_BIG;
+    if (ply_type_is_integer(property->type)) place->form = COORDINATE_NOWHERE;
+    return true;
+}
+
 static bool visit_property(void *user, const ply_property *property) {
     ply_parser *ply = user;
     switch (property->role) {
     case PLY_X:
     case PLY_Y:
     case PLY_Z:
-        return ply_data_number(&ply->data, property, &ply->position[property->role]);
+        return read_coordinate(ply, property);
     case PLY_CORNERS:
         return read_corners(ply, property);
     case PLY_PART:

@@ -295,6 +295,8 @@ struct point_cache_writer {
     output_file out; /* its file is NULL after a failure */
     bool big_endian;
     uint32_t vertex_count, frame_count, written_count;
+    uint32_t next;     /* the frame that is written next */
+    float start, rate; /* of a PC2 header */
     unsigned char chunk[CHUNK_FLOATS * sizeof(float)];
     char path[];
 };
@@ -315,7 +317,7 @@ static void abandon_file(point_cache_writer *writer) {
 
 static bool write_bytes(point_cache_writer *writer, size_t size, io_error *error) {
     if (fwrite(writer->chunk, 1, size, writer->out.file) == size) return true;
-    return io_fail(error, "%s: cannot write frame %" PRIu32 ": %s", writer->path, writer->written_count,
+    return io_fail(error, "%s: cannot write frame %" PRIu32 ": %s", writer->path, writer->next,
                    io_write_reason());
 }
 
@@ -324,8 +326,8 @@ static bool write_pc2_header(point_cache_writer *writer, io_error *error) {
     memcpy(header, POINT_CACHE_PC2_MAGIC, POINT_CACHE_PC2_MAGIC_SIZE);
     store_uint32(header + 12, 1, false);
     store_uint32(header + 16, writer->vertex_count, false);
-    store_float(header + 20, 0.0F, false);
-    store_float(header + 24, 1.0F, false);
+    store_float(header + 20, writer->start, false);
+    store_float(header + 24, writer->rate, false);
     store_uint32(header + 28, writer->frame_count, false);
     return write_bytes(writer, POINT_CACHE_PC2_HEADER_SIZE, error);
 }
@@ -339,6 +341,10 @@ static bool write_mdd_header(point_cache_writer *writer, io_error *error) {
         if (!write_bytes(writer, sizeof(float), error)) return false;
     }
     return true;
+}
+
+static bool write_header(point_cache_writer *writer, io_error *error) {
+    return writer->big_endian ? write_mdd_header(writer, error) : write_pc2_header(writer, error);
 }
 
 static bool create_file(point_cache_writer *writer, io_error *error) {
@@ -355,8 +361,7 @@ static bool begin_file(point_cache_writer *writer, io_error *error) {
     if (writer->vertex_count - 1 >= INT32_MAX || writer->frame_count - 1 >= INT32_MAX)
         return io_fail(error, "%s: %" PRIu32 " frames of %" PRIu32 " vertices, expected 1 to %d of each",
                        writer->path, writer->frame_count, writer->vertex_count, INT32_MAX);
-    if (!create_file(writer, error)) return false;
-    return pc2 ? write_pc2_header(writer, error) : write_mdd_header(writer, error);
+    return create_file(writer, error) && write_header(writer, error);
 }
 
 bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t frame_count,
@@ -368,6 +373,7 @@ bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t f
     memcpy(writer->path, path, path_size);
     writer->vertex_count = vertex_count;
     writer->frame_count = frame_count;
+    writer->rate = 1.0F;
     if (!begin_file(writer, error)) {
         abandon_file(writer);
         free(writer);
@@ -378,7 +384,7 @@ bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t f
 }
 
 static bool write_frame(point_cache_writer *writer, const double *positions, io_error *error) {
-    if (writer->written_count == writer->frame_count)
+    if (writer->next == writer->frame_count)
         return io_fail(error, "%s: one frame more than the %" PRIu32 " that its header promises",
                        writer->path, writer->frame_count);
     const size_t count = (size_t)writer->vertex_count * 3;
@@ -387,7 +393,7 @@ static bool write_frame(point_cache_writer *writer, const double *positions, io_
         if (!(fabs(positions[i]) <= (double)FLT_MAX)) /* comparing NaN gives false */
             return io_fail(
                 error, "%s: frame %" PRIu32 ", vertex %zu, %c is %g, expected a number that fits in float32",
-                writer->path, writer->written_count, i / 3, "xyz"[i % 3], positions[i]);
+                writer->path, writer->next, i / 3, "xyz"[i % 3], positions[i]);
         store_float(writer->chunk + used, (float)positions[i], writer->big_endian);
         used += sizeof(float);
         if (used == sizeof writer->chunk || i + 1 == count) {
@@ -396,8 +402,83 @@ static bool write_frame(point_cache_writer *writer, const double *positions, io_
         }
     }
     writer->written_count++;
+    writer->next++;
     return true;
 }
+
+/* ---- writing in another order --------------------------------------------------------------------------- */
+
+/* The byte at which a frame begins, in a file of so many frames. */
+static int64_t frame_offset(const point_cache_writer *writer, uint32_t frame_count, uint32_t frame) {
+    const int64_t times = (int64_t)frame_count * (int64_t)sizeof(float);
+    const int64_t start =
+        writer->big_endian ? POINT_CACHE_MDD_HEADER_SIZE + times : POINT_CACHE_PC2_HEADER_SIZE;
+    return start + (int64_t)frame * writer->vertex_count * POINT_CACHE_VERTEX_SIZE;
+}
+
+static bool seek_to(point_cache_writer *writer, int64_t offset, io_error *error) {
+    return fseeko(writer->out.file, (off_t)offset, SEEK_SET) == 0 ||
+           io_fail(error, "%s: cannot write its frames in another order than theirs: %s", writer->path,
+                   strerror(errno));
+}
+
+bool point_cache_writer_seek(point_cache_writer *writer, uint32_t frame, io_error *error) {
+    if (writer->out.file == NULL) return io_fail(error, "%s: an earlier write failed", writer->path);
+    if (frame == writer->next) return true;
+    writer->next = frame;
+    if (seek_to(writer, frame_offset(writer, writer->frame_count, frame), error)) return true;
+    abandon_file(writer);
+    return false;
+}
+
+static bool renew_header(point_cache_writer *writer, io_error *error) {
+    return seek_to(writer, 0, error) && write_header(writer, error);
+}
+
+bool point_cache_writer_number(point_cache_writer *writer, int32_t first, uint32_t step, io_error *error) {
+    const bool exact = (double)(float)first == (double)first && (double)(float)step == (double)step;
+    if (writer->out.file == NULL) return io_fail(error, "%s: an earlier write failed", writer->path);
+    if (!exact || (first == 0 && step == 1)) return true; /* as it is */
+    writer->start = (float)first;
+    writer->rate = (float)step;
+    if (writer->big_endian || renew_header(writer, error)) return true;
+    abandon_file(writer);
+    return false;
+}
+
+/* Moves bytes towards the beginning. */
+static bool move_bytes(point_cache_writer *writer, int64_t from, int64_t to, int64_t size, io_error *error) {
+    FILE *file = writer->out.file;
+    for (int64_t done = 0, part; done < size && from != to; done += part) {
+        part = size - done < (int64_t)sizeof writer->chunk ? size - done : (int64_t)sizeof writer->chunk;
+        if (!seek_to(writer, from + done, error)) return false;
+        if (fread(writer->chunk, 1, (size_t)part, file) != (size_t)part)
+            return io_fail(error, "%s: cannot read what was written: %s", writer->path, strerror(errno));
+        if (!seek_to(writer, to + done, error) || !write_bytes(writer, (size_t)part, error)) return false;
+    }
+    return true;
+}
+
+static bool keep_frames(point_cache_writer *writer, uint32_t first, uint32_t count, io_error *error) {
+    const int64_t from = frame_offset(writer, writer->frame_count, first),
+                  to = frame_offset(writer, count, 0);
+    const int64_t end = frame_offset(writer, count, count);
+    if (!move_bytes(writer, from, to, end - to, error)) return false;
+    writer->start += (float)first * writer->rate;
+    writer->frame_count = writer->written_count = count;
+    return renew_header(writer, error) &&
+           ((fflush(writer->out.file) == 0 && ftruncate(fileno(writer->out.file), (off_t)end) == 0) ||
+            io_fail_write(error, writer->path));
+}
+
+bool point_cache_writer_keep(point_cache_writer *writer, uint32_t first, uint32_t count, io_error *error) {
+    if (writer->out.file == NULL) return io_fail(error, "%s: an earlier write failed", writer->path);
+    if (keep_frames(writer, first, count, error)) return true;
+    abandon_file(writer);
+    return false;
+}
+
+/* ---- writing: the interface ----------------------------------------------------------------------------- */
 
 bool point_cache_writer_write(point_cache_writer *writer, const double *positions, io_error *error) {
     if (writer->out.file == NULL) return io_fail(error, "%s: an earlier write failed", writer->path);
@@ -411,6 +492,11 @@ static bool finish_file(point_cache_writer *writer, io_error *error) {
         return io_fail(error, "%s: only %" PRIu32 " frames were written, expected %" PRIu32, writer->path,
                        writer->written_count, writer->frame_count);
     return output_file_close(&writer->out, OUTPUT_WHOLE) || io_fail_write(error, writer->path);
+}
+
+void point_cache_writer_abandon(point_cache_writer *writer) {
+    if (writer != NULL) abandon_file(writer);
+    free(writer);
 }
 
 bool point_cache_writer_close(point_cache_writer *writer, io_error *error) {

@@ -47,10 +47,24 @@ typedef struct point_cache_writer point_cache_writer;
 bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t frame_count,
                              point_cache_writer **out, io_error *error);
 
+/* Before the first frame: says what the frames are called, `first` and so on in steps. Of MDD nothing is
+ * said, nor where a float cannot hold the number. */
+bool point_cache_writer_number(point_cache_writer *writer, int32_t first, uint32_t step, io_error *error);
+
+/* The frames to come are written from this one on. Each is written once. */
+bool point_cache_writer_seek(point_cache_writer *writer, uint32_t frame, io_error *error);
+
 /* Appends a frame, vertex_count * 3 positions rounded to float32; a value that is not finite in float32
  * is an error. After an error nothing is left of the file, every further write fails, and only close is
  * left to do. */
 bool point_cache_writer_write(point_cache_writer *writer, const double *positions, io_error *error);
+
+/* Before the end: the file ends with `count` frames, 1 or more, from `first` on, which have been written, and
+ * has no others. Files alone can end so, no pipes. A failure is that of a write. */
+bool point_cache_writer_keep(point_cache_writer *writer, uint32_t first, uint32_t count, io_error *error);
+
+/* Frees the writer; NULL is fine. Nothing is left of the file, and an older one stays. */
+void point_cache_writer_abandon(point_cache_writer *writer);
 
 /* Always frees the writer; NULL is fine. True if all frame_count frames are in the file. If not, none of it
  * is there; *error is set unless a write has already failed and said why. */
