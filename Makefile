@@ -116,7 +116,7 @@ OTHER_PROCESSES := $(foreach file,jobs/job_processes common/blas_kernels,tool/$(
 COMMON_SOURCES  := $(filter-out $(OTHER_PROCESSES) $(if $(filter 0,$(EXPAT)),tool/io/gifti.c,$(WITHOUT_GIFTI)), \
                      $(wildcard tool/io/*.c tool/io/*/*.c tool/picture/*.c tool/common/*.c tool/answers/*.c \
                      tool/jobs/*.c tool/export/*.c tool/report/*.c))
-COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check replay render) $(if $(HAS_SENSORS),sensors/tool/*.c))
+COMMAND_SOURCES := $(wildcard tool/*.c $(patsubst %,tool/%/*.c,check replay render untangle) $(if $(HAS_SENSORS),sensors/tool/*.c))
 NATIVE_SOURCES  := $(wildcard python/native/*.c)
 SUPPORT_SOURCES := $(filter-out $(if $(HAS_SENSORS),,tests/support/sensors/%),$(wildcard tests/support/*.c tests/support/*/*.c))
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.

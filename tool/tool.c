@@ -23,6 +23,7 @@ static const command commands[] = {
     {"sense", "warn where objects come near each other; can miss contacts", command_sense},
 #endif
     {"check", "find which parts cross or touch in which frames, and how deep", command_check},
+    {"untangle", "move vertices until no parts cross or touch", command_untangle},
     {"merge", "bring the results of the shards of a list together", command_merge},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
     {"render", "draw frames to a PNG", command_render},
@@ -36,7 +37,7 @@ static void print_help(void) {
     for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-11s %s\n", commands[i].name, commands[i].summary);
     printf(
         "\ncscd COMMAND --help says more; cscd --version.\n"
-        "exit: 0 ran, 1 bad input, 2 wrong usage, 3 found what --fail-on asks for, 4 not all jobs have run, 129, 130, 143 interrupted\n");
+        "exit: 0 ran, 1 bad input, 2 wrong usage, 3 found what --fail-on asks for, or not untangled, 4 not all jobs have run, 129, 130, 143 interrupted\n");
 }
 
 /* NULL: there is none of that name. */

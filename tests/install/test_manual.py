@@ -10,7 +10,7 @@ import pytest
 from support.install.built_tree import ROOT, shell
 from support.tool.running import run
 
-COMMANDS = ("preprocess", "replay", "report", "sense", "check", "merge", "info", "render")
+COMMANDS = ("preprocess", "replay", "report", "sense", "check", "untangle", "merge", "info", "render")
 # The text of cscd(1) without fonts.
 PAGE = re.sub(r"\\f.", "", (ROOT / "docs/man/cscd.1").read_text()).replace("\\-", "-")
 

@@ -241,10 +241,9 @@ static void say_left_out_pairs(FILE *out, size_t count, size_t all, const char *
     *said += count;
 }
 
-/* A run that passes because pairs are left out says so. */
-static void say_what_was_left_out(FILE *out, const answers *a) {
-    if (!ignore_pairs_any(a->shown.ignored)) return;
-    const ignore_counts counts = ignore_pairs_count(a->shown.ignored);
+void ignored_pairs_say(FILE *out, const ignore_pairs *ignored) {
+    if (!ignore_pairs_any(ignored)) return;
+    const ignore_counts counts = ignore_pairs_count(ignored);
     size_t said = 0;
     say_left_out_pairs(out, counts.parts, counts.all_parts, "parts", &said,
                        counts.components + counts.triangles == 0);
@@ -338,7 +337,7 @@ void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit
         fputc('.', out);
     }
     say_what_is_not_known(out, a);
-    say_what_was_left_out(out, a);
+    ignored_pairs_say(out, a->shown.ignored);
     say_range(out, a);
     say_animations(out, a);
     say_what_has_collapsed(out, a);

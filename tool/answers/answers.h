@@ -367,6 +367,10 @@ int fail_rules_exit_code(const fail_rules *rules, const answers *a, bool printed
  * answers_finish. */
 void answers_print_sentence(FILE *out, const answers *a, const length_unit *unit);
 
+/* A run that passes because pairs are left out says so: " As asked, 3 of 6 pairs of parts were not looked
+ * at.", or nothing. */
+void ignored_pairs_say(FILE *out, const ignore_pairs *ignored);
+
 /* Prints on the standard output a row for each event, as many as a screen holds; nothing where there is
  * none. */
 void answers_print_events(const answers *a, const length_unit *unit);

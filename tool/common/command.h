@@ -10,7 +10,7 @@ typedef enum exit_code {
     EXIT_RAN = 0,
     EXIT_BAD_INPUT = 1,
     EXIT_USAGE = 2,
-    EXIT_CONTACT = 3, /* found what --fail-on, --fail-depth or --max-faces asks for */
+    EXIT_CONTACT = 3, /* found what --fail-on, --fail-depth or --max-faces asks for; not untangled */
     EXIT_UNDONE = 4   /* not all jobs of a list have run, or their results are not kept */
 } exit_code;
 
@@ -22,6 +22,7 @@ int command_preprocess(int argument_count, char **arguments);
 int command_replay(int argument_count, char **arguments);
 int command_sense(int argument_count, char **arguments);
 int command_check(int argument_count, char **arguments);
+int command_untangle(int argument_count, char **arguments);
 int command_merge(int argument_count, char **arguments);
 int command_info(int argument_count, char **arguments);
 int command_report(int argument_count, char **arguments);

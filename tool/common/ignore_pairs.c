@@ -27,17 +27,6 @@ static unsigned char *make_table(const part_rules *rules) {
     return io_zeroed((size_t)rules->size * rules->size);
 }
 
-static bool fail_name(const part_names *parts, const char *option, const char *name, size_t length,
-                      io_error *error) {
-    char known[400] = "";
-    size_t used = 0;
-    for (uint32_t i = 0; i < parts->count && used + 48 < sizeof known; i++)
-        used += (size_t)snprintf(known + used, sizeof known - used, "%s%.*s", i > 0 ? ", " : "",
-                                 TEXT_CUT(parts->names[i], 40));
-    return io_fail(error, "%s: there is no part '%.*s'; the parts are %s%s", option, (int)length, name, known,
-                   parts->count > 0 && used + 48 >= sizeof known ? ", ..." : "");
-}
-
 /* Marks the pairs of one text; chosen: two times size. */
 static bool mark_text(const part_rules *rules, const char *option, const char *text, unsigned char *table,
                       bool *chosen, io_error *error) {
@@ -48,7 +37,7 @@ static bool mark_text(const part_rules *rules, const char *option, const char *t
     for (int i = 0; i < 2; i++) {
         memset(sides[i], names[i] == NULL, rules->size * sizeof *sides[i]);
         if (names[i] != NULL && part_names_choose(rules->parts, names[i], lengths[i], sides[i]) == 0)
-            return fail_name(rules->parts, option, names[i], lengths[i], error);
+            return part_names_fail(rules->parts, option, names[i], lengths[i], error);
     }
     for (uint32_t a = 0; a < rules->size; a++)
         for (uint32_t b = 0; b < rules->size; b++)

@@ -39,6 +39,17 @@ uint32_t part_names_choose(const part_names *parts, const char *name, size_t len
     return count;
 }
 
+bool part_names_fail(const part_names *parts, const char *option, const char *name, size_t length,
+                     io_error *error) {
+    char known[400] = "";
+    size_t used = 0;
+    for (uint32_t i = 0; i < parts->count && used + 48 < sizeof known; i++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%.*s", i > 0 ? ", " : "",
+                                 TEXT_CUT(parts->names[i], 40));
+    return io_fail(error, "%s: there is no part '%.*s'; the parts are %s%s", option, (int)length, name, known,
+                   parts->count > 0 && used + 48 >= sizeof known ? ", ..." : "");
+}
+
 static bool allocate_labels(const recording *r, part_names *parts, io_error *error) {
     uint32_t count = cscd_mesh_triangle_count(r->mesh);
     parts->labels = io_realloc(NULL, ((size_t)count + 1) * sizeof *parts->labels);

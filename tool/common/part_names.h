@@ -37,3 +37,7 @@ const char *part_names_at(const part_names *parts, uint32_t part);
 /* Marks the parts that a name stands for: that of the same name, and all below it (NAME/...). chosen: count
  * of them. Returns how many there are. */
 uint32_t part_names_choose(const part_names *parts, const char *name, size_t length, bool *chosen);
+
+/* Fails because an option names a part that there is not: says so, and which there are. */
+bool part_names_fail(const part_names *parts, const char *option, const char *name, size_t length,
+                     io_error *error);
