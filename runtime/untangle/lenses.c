@@ -406,7 +406,8 @@ static bool add_points_of_patch(lens_finder *f, const cscd_intersections *found,
     const uint32_t patch = entry_patch(f->entries[OF_VERTICES][first]);
     if (!choose_triangles(f, found->curves, patch, rules->rings)) return false;
     if (f->triangle_count == 0) return true;
-    if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)f->triangle_count)) return false;
+    if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)f->triangle_count, end - first))
+        return false;
     const bool along = rules->along_axis && patch_axis(f, x, first, end, axis);
     for (size_t i = first; i < end; i++) {
         const uint32_t v = entry_number(f->entries[OF_VERTICES][i]);
@@ -442,7 +443,7 @@ static bool add_point_of_edge(lens_finder *f, const double *x, const cscd_curve_
         if (!shares) f->triangles[kept++] = f->triangles[i];
     }
     if (kept == 0) return true;
-    if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)kept)) return false;
+    if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)kept, 1)) return false;
     const set_place place = triangle_set_nearest(&f->set, from);
     lens_point point = {.vertices = {ends[0], ends[1]}, .weights = {1.0 - s, s}};
     take_place(f, x, from, &place, true, &point);

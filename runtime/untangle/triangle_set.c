@@ -7,17 +7,24 @@
 #include <math.h>
 #include <string.h>
 
+/* For fewer questions than this no tree is made. */
+enum { FEW_QUESTIONS = 8 };
+
 enum { LEAF_SIZE = 4, DEPTH_MAX = 64 };
 
-/* Children follow each other; a node without children has items. */
+typedef struct set_middle {
+    double x[3]; /* three times the middle */
+    uint32_t triangle;
+} set_middle;
+
 typedef struct set_node {
     double low[3], high[3];
     uint32_t first, count; /* items */
-    uint32_t child;        /* the first of two; 0: it is a leaf */
+    uint32_t child;        /* the first of two children, which follow each other; 0: it is a leaf */
 } set_node;
 
 static array_list list_arrays(triangle_set *s, size_t count) {
-    return (array_list){{ARRAY(s->items, count), ARRAY(s->nodes, 2 * count)}};
+    return (array_list){{ARRAY(s->items, count), ARRAY(s->middles, count), ARRAY(s->nodes, 2 * count)}};
 }
 
 void triangle_set_free(triangle_set *s) {
@@ -31,11 +38,6 @@ static const double *corner_of(const triangle_set *s, uint32_t triangle, int cor
     return s->x + 3 * (size_t)s->mesh->triangles[triangle][corner];
 }
 
-static double middle_along(const triangle_set *s, uint32_t triangle, int axis) {
-    return corner_of(s, triangle, 0)[axis] + corner_of(s, triangle, 1)[axis] +
-           corner_of(s, triangle, 2)[axis];
-}
-
 static void bound_node(const triangle_set *s, set_node *node) {
     for (int k = 0; k < 3; k++) {
         node->low[k] = (double)INFINITY;
@@ -43,7 +45,7 @@ static void bound_node(const triangle_set *s, set_node *node) {
     }
     for (uint32_t i = node->first; i < node->first + node->count; i++) {
         for (int c = 0; c < 3; c++) {
-            const double *p = corner_of(s, s->items[i], c);
+            const double *p = corner_of(s, s->middles[i].triangle, c);
             for (int k = 0; k < 3; k++) {
                 node->low[k] = min_of(node->low[k], p[k]);
                 node->high[k] = max_of(node->high[k], p[k]);
@@ -61,23 +63,22 @@ static int longest_axis(const set_node *node) {
 }
 
 /* Is the middle of a before that of b? Equal ones are in the order of their numbers. */
-static bool comes_before(const triangle_set *s, int axis, uint32_t a, uint32_t b) {
-    const double at_a = middle_along(s, a, axis), at_b = middle_along(s, b, axis);
-    return at_a < at_b || (at_a == at_b && a < b);
+static bool comes_before(const set_middle *a, const set_middle *b, int axis) {
+    return a->x[axis] < b->x[axis] || (a->x[axis] == b->x[axis] && a->triangle < b->triangle);
 }
 
-/* Puts the item with this rank in its place, lesser ones before it and others behind it (Hoare's selection). */
-static void select_median(triangle_set *s, int axis, uint32_t first, uint32_t end, uint32_t rank) {
+/* Puts the triangle with this rank in its place, lesser ones before it and others behind it (Hoare's selection). */
+static void select_median(set_middle *middles, int axis, uint32_t first, uint32_t end, uint32_t rank) {
     while (end - first > 1) {
-        const uint32_t pivot = s->items[first + (end - first - 1) / 2]; /* never the last one */
+        const set_middle pivot = middles[first + (end - first - 1) / 2]; /* never the last one */
         uint32_t low = first, high = end - 1;
         for (;;) {
-            while (comes_before(s, axis, s->items[low], pivot)) low++;
-            while (comes_before(s, axis, pivot, s->items[high])) high--;
+            while (comes_before(&middles[low], &pivot, axis)) low++;
+            while (comes_before(&pivot, &middles[high], axis)) high--;
             if (low >= high) break;
-            const uint32_t other = s->items[low];
-            s->items[low++] = s->items[high];
-            s->items[high--] = other;
+            const set_middle other = middles[low];
+            middles[low++] = middles[high];
+            middles[high--] = other;
         }
         if (rank <= high)
             end = high + 1;
@@ -89,9 +90,9 @@ static void select_median(triangle_set *s, int axis, uint32_t first, uint32_t en
 static void divide_node(triangle_set *s, uint32_t number) {
     set_node *node = &s->nodes[number];
     bound_node(s, node);
-    if (node->count <= LEAF_SIZE) return;
+    if (node->count <= s->leaf_size) return;
     const uint32_t half = node->count / 2;
-    select_median(s, longest_axis(node), node->first, node->first + node->count, node->first + half);
+    select_median(s->middles, longest_axis(node), node->first, node->first + node->count, node->first + half);
     const uint32_t child = s->node_count;
     s->node_count += 2;
     node->child = child;
@@ -99,8 +100,15 @@ static void divide_node(triangle_set *s, uint32_t number) {
     s->nodes[child + 1] = (set_node){.first = node->first + half, .count = node->count - half};
 }
 
+static set_middle middle_of(const triangle_set *s, uint32_t triangle) {
+    set_middle m = {.triangle = triangle};
+    for (int k = 0; k < 3; k++)
+        m.x[k] = corner_of(s, triangle, 0)[k] + corner_of(s, triangle, 1)[k] + corner_of(s, triangle, 2)[k];
+    return m;
+}
+
 bool triangle_set_make(triangle_set *s, const cscd_mesh *mesh, const double *x, const uint32_t *triangles,
-                       uint32_t count) {
+                       uint32_t count, size_t questions) {
     s->mesh = mesh;
     s->x = x;
     s->count = s->node_count = 0;
@@ -108,10 +116,12 @@ bool triangle_set_make(triangle_set *s, const cscd_mesh *mesh, const double *x, 
         return false;
     s->count = count;
     if (count == 0) return true;
-    memcpy(s->items, triangles, count * sizeof *triangles);
+    s->leaf_size = questions < FEW_QUESTIONS ? count : LEAF_SIZE;
+    for (uint32_t i = 0; i < count; i++) s->middles[i] = middle_of(s, triangles[i]);
     s->node_count = 1;
     s->nodes[0] = (set_node){.count = count};
     for (uint32_t i = 0; i < s->node_count; i++) divide_node(s, i);
+    for (uint32_t i = 0; i < count; i++) s->items[i] = s->middles[i].triangle;
     return true;
 }
 

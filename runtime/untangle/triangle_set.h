@@ -16,7 +16,8 @@ typedef struct triangle_set {
     const cscd_mesh *mesh;
     const double *x;
     uint32_t *items; /* the triangles, in the order of the tree */
-    uint32_t count;
+    uint32_t count, leaf_size;
+    struct set_middle *middles; /* while the tree is made */
     struct set_node *nodes;
     uint32_t node_count;
     size_t capacity;
@@ -24,9 +25,10 @@ typedef struct triangle_set {
 
 void triangle_set_free(triangle_set *s);
 
-/* Makes the tree of the triangles at the positions, both of which the set then uses; triangles are copied. False: no memory. */
+/* Makes the tree of the triangles at the positions, which the set then uses; triangles are copied. questions: about how many searches
+ * there will be. False: no memory. */
 bool triangle_set_make(triangle_set *s, const cscd_mesh *mesh, const double *x, const uint32_t *triangles,
-                       uint32_t count);
+                       uint32_t count, size_t questions);
 
 /* The nearest point of the set. */
 set_place triangle_set_nearest(const triangle_set *s, const double point[3]);

@@ -106,61 +106,83 @@ typedef struct best_result {
     double *stored;             /* of those at hand */
     const cscd_scalar *scalars; /* per object; NULL: doubles */
     tangle_count count;
+    double displacement; /* the greatest */
+    bool rough;          /* clean, and no descent has made displacements smooth */
 } best_result;
-
-static bool is_better(tangle_count a, tangle_count b) {
-    return a.pairs != b.pairs ? a.pairs < b.pairs : a.near < b.near;
-}
 
 static bool is_clean(tangle_count a) {
     return a.pairs == 0 && a.near == 0;
 }
 
+/* Clean results are compared by how far they move; others by their pairs. */
+static bool is_better(const best_result *best, tangle_count count, double displacement) {
+    if (is_clean(count) && is_clean(best->count)) return best->rough || displacement < best->displacement;
+    return count.pairs != best->count.pairs ? count.pairs < best->count.pairs : count.near < best->count.near;
+}
+
+static double greatest_displacement(const untangle_work *w, const double *x, const double *from) {
+    double squared = 0.0;
+    for (size_t v = 0; v < w->mesh->vertex_count; v++)
+        squared = max_of(squared, vec3_squared_distance(x + 3 * v, from + 3 * v));
+    return sqrt(squared);
+}
+
 /* Rounds positions as they will be stored. Vertices that are fixed are the input, bit for bit. */
 static void round_positions(const untangle_work *w, const best_result *best, const double *x) {
     for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
-        const cscd_scalar scalar =
-            best->scalars != NULL ? best->scalars[cscd_mesh_vertex_object(w->mesh, v)] : CSCD_SCALAR_DOUBLE;
+        const uint32_t object = cscd_mesh_vertex_object(w->mesh, v);
+        const cscd_scalar scalar = best->scalars != NULL ? best->scalars[object] : CSCD_SCALAR_DOUBLE;
         for (size_t k = 3 * (size_t)v; k < 3 * (size_t)v + 3; k++) {
-            best->stored[k] =
-                w->graph.fixed[v] || scalar == CSCD_SCALAR_DOUBLE ? x[k] : stored_coordinate(x[k], scalar);
+            const bool kept = w->graph.fixed[v] || scalar == CSCD_SCALAR_DOUBLE;
+            best->stored[k] = kept ? x[k] : stored_coordinate(x[k], scalar);
         }
     }
 }
 
 /* Has every vertex that is fixed come to where it is in the input? */
 static bool fixed_arrived(const untangle_work *w, const double *x) {
-    for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
-        if (w->graph.fixed[v] && memcmp(x + 3 * (size_t)v, w->input + 3 * (size_t)v, sizeof(double[3])) != 0)
-            return false;
+    for (size_t v = 0; v < w->mesh->vertex_count; v++) {
+        if (w->graph.fixed[v] && memcmp(x + 3 * v, w->input + 3 * v, sizeof(double[3])) != 0) return false;
     }
     return true;
 }
 
 /* Keeps positions if they are better than what there is. */
 static cscd_status offer_positions(untangle_work *w, best_result *best, const double *x,
-                                   cscd_untangle_start start) {
+                                   cscd_untangle_start start, bool rough) {
     tangle_count count;
-    const size_t n = 3 * (size_t)w->mesh->vertex_count;
     if (!fixed_arrived(w, x)) return CSCD_OK;
     round_positions(w, best, x);
+    const double displacement = greatest_displacement(w, best->stored, w->input);
     cscd_status status = work_count(w, best->stored, &count);
-    if (status != CSCD_OK || !is_better(count, best->count)) return status;
+    if (status != CSCD_OK || (rough && is_clean(best->count)) || !is_better(best, count, displacement))
+        return status;
     best->count = count;
-    memcpy(best->x, best->stored, n * sizeof *best->x);
+    best->displacement = displacement;
+    best->rough = rough;
+    memcpy(best->x, best->stored, 3 * (size_t)w->mesh->vertex_count * sizeof *best->x);
     w->found.start = start;
     return CSCD_OK;
+}
+
+/* A clean result that moves vertices no farther than this, in thicknesses, is good enough; half is the least possible. */
+static const double good_displacement = 1.1;
+
+/* Lenses that are thinner than this, in edge lengths, say nothing of how far vertices must move. */
+static const double thin_lens = 0.2;
+
+static bool is_good(const untangle_work *w, const best_result *best) {
+    const double thickness = max_of(w->found.thickness, thin_lens * w->graph.edge_length);
+    return is_clean(best->count) && !best->rough && best->displacement <= good_displacement * thickness;
 }
 
 /* ---- starts -------------------------------------------------------------------------------------------- */
 
 /* How displacements are spread where the caller does not say. */
 static double spread_of(const untangle_work *w, const double *x) {
-    double squared = 0.0;
     if (w->options.spread > 0.0) return w->options.spread;
-    for (size_t v = 0; v < w->mesh->vertex_count; v++)
-        squared = max_of(squared, vec3_squared_distance(x + 3 * v, w->goal + 3 * v));
-    const double thickness = w->found.thickness > 0.0 ? w->found.thickness : 2.0 * sqrt(squared);
+    const double thickness =
+        w->found.thickness > 0.0 ? w->found.thickness : 2.0 * greatest_displacement(w, x, w->goal);
     return max_of(2.0 * thickness, 3.0 * w->graph.edge_length);
 }
 
@@ -170,32 +192,22 @@ enum { HEALINGS = 60 };
 static cscd_status heal_gaps(untangle_work *w, double *x) {
     tangle_count count;
     cscd_status status = work_count(w, x, &count);
-    for (int i = 0;
-         status == CSCD_OK && i < HEALINGS && count.pairs == 0 && count.near > 0 && work_goes_on(w); i++) {
+    for (int i = 0; i < HEALINGS && work_goes_on(w); i++) {
+        if (status != CSCD_OK || count.pairs > 0 || count.near == 0) break;
         status = approach_once(w, x, x);
         if (status == CSCD_OK) status = work_count(w, x, &count);
     }
     return status;
 }
 
-/* From positions that do not intersect to the result. */
-static cscd_status refine_start(untangle_work *w, best_result *best, double *x, bool near,
+/* From positions that do not intersect to the result. far: they may be anywhere. */
+static cscd_status refine_start(untangle_work *w, best_result *best, double *x, bool far,
                                 cscd_untangle_start start) {
     cscd_status status = heal_gaps(w, x);
-    if (status == CSCD_OK && (!near || !fixed_arrived(w, x))) status = approach_goal(w, x);
-    if (status == CSCD_OK) status = offer_positions(w, best, x, start);
+    if (status == CSCD_OK && (far || !fixed_arrived(w, x))) status = approach_goal(w, x);
+    if (status == CSCD_OK) status = offer_positions(w, best, x, start, true);
     if (status == CSCD_OK) status = descent_run(w, spread_of(w, x), x);
-    if (status != CSCD_OK) return status;
-    if (is_clean(
-            best->count)) { /* the end of the descent is better than its start, if it is clean as stored */
-        tangle_count count;
-        round_positions(w, best, x);
-        status = work_count(w, best->stored, &count);
-        if (status == CSCD_OK && is_clean(count))
-            memcpy(best->x, best->stored, 3 * (size_t)w->mesh->vertex_count * sizeof *x);
-        return status;
-    }
-    return offer_positions(w, best, x, start);
+    return status == CSCD_OK ? offer_positions(w, best, x, start, false) : status;
 }
 
 /* Writes the input plus a share of the displacement of the start. */
@@ -242,7 +254,7 @@ static cscd_status try_given(untangle_work *w, best_result *best, double *x, dou
             "start is not clean: %zu pairs of triangles intersect, and %zu pairs of features are too near",
             count.pairs, count.near);
     if (carried) status = follow_start(w, x, scratch);
-    return status == CSCD_OK ? refine_start(w, best, x, carried, CSCD_UNTANGLE_GIVEN) : status;
+    return status == CSCD_OK ? refine_start(w, best, x, !carried, CSCD_UNTANGLE_GIVEN) : status;
 }
 
 /* What is tried in turn. Over-separation and stiffness help where curves bound no vertex; a descent takes back what they add. */
@@ -254,20 +266,33 @@ enum { PUSHES = sizeof pushes / sizeof *pushes };
 static cscd_status try_shrinking(untangle_work *w, best_result *best, double *x) {
     bool clean;
     cscd_status status = shrink_apart(w, x, &clean);
-    if (status == CSCD_OK && clean) status = refine_start(w, best, x, false, CSCD_UNTANGLE_SHRUNK);
+    if (status == CSCD_OK && clean) status = refine_start(w, best, x, true, CSCD_UNTANGLE_SHRUNK);
     return status;
 }
 
-static cscd_status try_pushes(untangle_work *w, best_result *best, double *x) {
-    const size_t size = 3 * (size_t)w->mesh->vertex_count * sizeof *x;
-    for (int i = 0; i < PUSHES && work_goes_on(w); i++) {
-        size_t left;
-        memcpy(x, w->input, size);
-        cscd_status status = push_out(w, &pushes[i], x, &left);
-        if (status == CSCD_OK && left > 0) status = offer_positions(w, best, x, CSCD_UNTANGLE_PUSHED);
-        if (status == CSCD_OK && left == 0) status = refine_start(w, best, x, true, CSCD_UNTANGLE_PUSHED);
-        if (status == CSCD_OK && i == 0 && !is_clean(best->count)) status = try_shrinking(w, best, x);
-        if (status != CSCD_OK || is_clean(best->count)) return status;
+static cscd_status try_pushing(untangle_work *w, best_result *best, const push_rules *rules, double *x) {
+    size_t left;
+    memcpy(x, w->input, 3 * (size_t)w->mesh->vertex_count * sizeof *x);
+    cscd_status status = push_out(w, rules, x, &left);
+    if (status != CSCD_OK) return status;
+    return left > 0 ? offer_positions(w, best, x, CSCD_UNTANGLE_PUSHED, true)
+                    : refine_start(w, best, x, false, CSCD_UNTANGLE_PUSHED);
+}
+
+/* What is tried in turn, until a result is good. Over-separation and stiffness help where curves bound no vertex; a descent takes
+ * back what they add. Bodies on a skewer come apart only when they are shrunk. */
+static cscd_status try_starts(untangle_work *w, best_result *best, double *x) {
+    static const push_rules pushes[] = {{30.0, 0.02, 2.0, false},
+                                        {300.0, 0.6, 3.0, true},
+                                        {1000.0, 0.3, 2.0, true},
+                                        {1000.0, 1.0, 3.0, true}};
+    enum { SHRINKING = 2, STARTS = 5 };
+    for (int i = 0; i < STARTS && work_goes_on(w); i++) {
+        w->stage_begin = (double)i / STARTS;
+        w->stage_end = (double)(i + 1) / STARTS;
+        cscd_status status = i == SHRINKING ? try_shrinking(w, best, x)
+                                            : try_pushing(w, best, &pushes[i < SHRINKING ? i : i - 1], x);
+        if (status != CSCD_OK || is_good(w, best)) return status;
     }
     return CSCD_OK;
 }
@@ -316,10 +341,10 @@ static cscd_status search_result(untangle_work *w, best_result *best, double *x,
     }
     if (best->count.pairs == 0) { /* some pairs are too near, no more */
         memcpy(x, w->input, 3 * (size_t)w->mesh->vertex_count * sizeof *x);
-        status = refine_start(w, best, x, true, CSCD_UNTANGLE_PUSHED);
+        status = refine_start(w, best, x, false, CSCD_UNTANGLE_PUSHED);
         if (status != CSCD_OK || is_clean(best->count)) return status;
     }
-    return try_pushes(w, best, x);
+    return try_starts(w, best, x);
 }
 
 static void sum_up(untangle_work *w, const best_result *best) {
