@@ -257,12 +257,6 @@ static cscd_status try_given(untangle_work *w, best_result *best, double *x, dou
     return status == CSCD_OK ? refine_start(w, best, x, !carried, CSCD_UNTANGLE_GIVEN) : status;
 }
 
-/* What is tried in turn. Over-separation and stiffness help where curves bound no vertex; a descent takes back what they add. */
-static const push_rules pushes[] = {
-    {30.0, 0.02, 2.0, false}, {300.0, 0.6, 3.0, true}, {1000.0, 0.3, 2.0, true}, {1000.0, 1.0, 3.0, true}};
-
-enum { PUSHES = sizeof pushes / sizeof *pushes };
-
 static cscd_status try_shrinking(untangle_work *w, best_result *best, double *x) {
     bool clean;
     cscd_status status = shrink_apart(w, x, &clean);
