@@ -45,16 +45,16 @@ typedef struct untangle_choices {
     bool floats, quick, list, write_all;
 } untangle_choices;
 
-typedef struct untangle_run {
+typedef struct corpus_run {
     const untangle_choices *choices;
     cscd_context *context;
     untangle_cases cases;
     json out;
-} untangle_run;
+} corpus_run;
 
 /* ---- cases --------------------------------------------------------------------------------------------- */
 
-static bool report_case(untangle_run *r, const untangle_trial *t, const untangle_case *c, io_error *error) {
+static bool report_case(corpus_run *r, const untangle_trial *t, const untangle_case *c, io_error *error) {
     const untangle_choices *o = r->choices;
     print_case(c);
     write_case(&r->out, c);
@@ -67,7 +67,7 @@ static bool is_wanted_frame(const untangle_choices *o, uint32_t frame) {
     return frame >= o->first && frame <= o->last;
 }
 
-static bool run_single(untangle_run *r, untangle_trial *t, io_error *error) {
+static bool run_single(corpus_run *r, untangle_trial *t, io_error *error) {
     const untangle_choices *o = r->choices;
     uint32_t crossing = 0, run = 0;
     untangle_case c;
@@ -87,7 +87,7 @@ static void keep_start(untangle_trial *t, const double *result, uint32_t frame) 
 }
 
 /* Follows crossing frames from one end, where the frame before it is clean, to the other or until one is not clean. */
-static bool follow_frames(untangle_run *r, untangle_trial *t, uint32_t from, uint32_t to, io_error *error) {
+static bool follow_frames(corpus_run *r, untangle_trial *t, uint32_t from, uint32_t to, io_error *error) {
     const untangle_choices *o = r->choices;
     const int way = to >= from ? 1 : -1;
     const uint32_t clean = from - (uint32_t)way;
@@ -104,7 +104,7 @@ static bool follow_frames(untangle_run *r, untangle_trial *t, uint32_t from, uin
     return true;
 }
 
-static bool run_followed(untangle_run *r, untangle_trial *t, io_error *error) {
+static bool run_followed(corpus_run *r, untangle_trial *t, io_error *error) {
     const uint32_t count = t->scene.frame_count;
     for (uint32_t f = 0, end; f < count && !interrupted(); f = end + 1) {
         end = f;
@@ -134,7 +134,7 @@ static void list_scene(const untangle_trial *t) {
            e->held_out ? "  held out" : "");
 }
 
-static bool run_entry(untangle_run *r, const corpus_entry *e, io_error *error) {
+static bool run_entry(corpus_run *r, const corpus_entry *e, io_error *error) {
     const untangle_choices *o = r->choices;
     untangle_trial t;
     if (!untangle_trial_open(e, r->context, o->gap, &t, error)) return false;
@@ -160,7 +160,7 @@ static bool is_wanted(const untangle_choices *o, const corpus_entry *e) {
            (!o->quick || (e->quick && !e->large));
 }
 
-static bool run_corpus(untangle_run *r, const corpus *all, io_error *error) {
+static bool run_corpus(corpus_run *r, const corpus *all, io_error *error) {
     bool good = true;
     if (r->choices->list)
         printf("class  scene                    triangles  frames  crossing  first    least     most\n");
@@ -248,7 +248,7 @@ static bool parse_arguments(int count, char **arguments, untangle_choices *o) {
 }
 
 static bool run_program(const untangle_choices *o, int argument_count, char **arguments, io_error *error) {
-    untangle_run r = {.choices = o};
+    corpus_run r = {.choices = o};
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = o->thread_count;
     if (!row_file_open(o->json_path, &r.out, error)) return false;
