@@ -13,6 +13,7 @@ import re
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -36,6 +37,8 @@ COMMANDS = [
     (["replay", "body.obj", "body.pc2", "--method", "iccd", "--vtk", "out"], ["out.pvd"]),
     (["report", "body.summary.json", "-o", "out.html"], ["out.html"]),
     (["report", "body.results.jsonl", "-o", "out.html"], ["out.html"]),
+    (["untangle", "two.obj", "-o", "out.obj", "--gap", "0.01", "--json", "out.json"], ["out.obj", "out.json"]),
+    (["untangle", "two.obj", "two.pc2", "-o", "out.pc2", "--json", "out.json"], ["out.pc2", "out.json"]),
     (["merge", "body.results.jsonl", "-o", "out.jsonl"], ["out.jsonl"]),
     (["render", "body.obj", "body.pc2", "--frame", "1", "--size", "64x64", "-o", "out.png"], ["out.png"]),
     (["sense", "mannequin.glb", "mannequin.glb", "--frames", "0:2", "--json", "out.json"], ["out.json"]),
@@ -58,6 +61,23 @@ class Rig:
         self.shim, self.share, self.seed = os.path.abspath(shim), share, seed
         self.corpus = tempfile.mkdtemp(prefix="cscd-faults-")
         subprocess.run([os.path.join(os.path.dirname(__file__), "..", "fuzz", "corpus.sh"), build, self.corpus], check=True)
+        self.write_two_bodies()
+
+    def write_two_bodies(self):
+        """The body twice: in itself, and in a recording whose second frame is the clean one."""
+        with open(os.path.join(self.corpus, "body.obj"), encoding="ascii") as file:
+            rows = [line.split() for line in file]
+        points = [tuple(map(float, row[1:4])) for row in rows if row[:1] == ["v"]]
+        faces = [[int(corner.split("/")[0]) for corner in row[1:]] for row in rows if row[:1] == ["f"]]
+        size = max(x for x, _, _ in points) - min(x for x, _, _ in points)
+        frames = [points + [(x + share * size, y + 0.03 * size, z) for x, y, z in points] for share in (0.8, 1.1, 0.9)]
+        faces += [[corner + len(points) for corner in face] for face in faces]
+        with open(os.path.join(self.corpus, "two.obj"), "w", encoding="ascii") as file:
+            file.writelines(f"v {x} {y} {z}\n" for x, y, z in frames[0])
+            file.writelines(f"f {' '.join(map(str, face))}\n" for face in faces)
+        with open(os.path.join(self.corpus, "two.pc2"), "wb") as file:
+            file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, len(frames[0]), 0.0, 1.0, len(frames)))
+            file.write(b"".join(struct.pack("<3f", *point) for frame in frames for point in frame))
 
     def places(self, first, count, step=1):
         """Every SHARE-th of the places first, first + step, ..."""
@@ -69,7 +89,7 @@ class Rig:
         def set_limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-        options = ["--threads", "1"] if arguments[0] in ("replay", "check", "sense") else []
+        options = ["--threads", "1"] if arguments[0] in ("replay", "check", "sense", "untangle") else []
         done = subprocess.run([self.tool, *arguments, *options], cwd=folder, capture_output=True, text=True, errors="replace",
                               env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **kernels(), **(environment or {})},
                               preexec_fn=set_limit if limit is not None else None, timeout=SECONDS_MAX, check=False)
@@ -106,6 +126,9 @@ def is_whole(name, data, expected):
     if timeless(data) == timeless(expected):
         return True
     ending = name.rpartition(".")[2]
+    if ending == "pc2":
+        points, samples = struct.unpack("<i", data[16:20])[0], struct.unpack("<i", data[28:32])[0]
+        return len(data) == 32 + points * samples * 12
     try:
         if ending in ("json", "select"):
             json.loads(data)
