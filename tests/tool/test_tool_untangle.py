@@ -139,8 +139,10 @@ def nearest_points(path):
 
 def test_a_gap_is_as_large_as_it_says():
     run("untangle balls.obj -o near.obj")
-    run("untangle balls.obj -o far.obj --gap 0.1")
-    assert nearest_points("near.obj") < 0.1 <= nearest_points("far.obj")
+    warning = run("untangle balls.obj -o far.obj --gap 0.1").error
+    assert nearest_points("near.obj") < 0.1 <= nearest_points("far.obj") and warning == ""
+    warning = run("untangle balls.obj -o far.obj --gap 0.2").error
+    assert warning == "cscd: warning: 56 of 756 edges are shorter than the gap of 0.2, so what lies around them has to grow\n"
 
 
 def test_pinned_parts_stay_where_they_are():

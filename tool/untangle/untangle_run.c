@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct untangle_run {
+typedef struct untangle_state {
     const untangle_options *options;
     recording recording;
     ignore_pairs ignored;
@@ -24,25 +24,25 @@ typedef struct untangle_run {
     float
         *floats; /* of the model, where they are what is written: room for each set of positions of a call */
     bool *moved; /* per vertex */
-} untangle_run;
+} untangle_state;
 
 enum { POSITIONS_OF_CALL = 4 };
 
-static uint32_t vertex_count_of(const untangle_run *u) {
+static uint32_t vertex_count_of(const untangle_state *u) {
     return cscd_mesh_vertex_count(u->recording.mesh);
 }
 
-static size_t model_size(const untangle_run *u) {
+static size_t model_size(const untangle_state *u) {
     return (size_t)u->recording.objects[0].vertex_count * 3;
 }
 
-static bool api_failed(const untangle_run *u, io_error *error) {
+static bool api_failed(const untangle_state *u, io_error *error) {
     return io_fail(error, "%s", cscd_context_detail(u->recording.context));
 }
 
 /* ---- what stays where it is ------------------------------------------------------------------------------ */
 
-static void pin_triangles(untangle_run *u, const bool *chosen) {
+static void pin_triangles(untangle_state *u, const bool *chosen) {
     const part_names *parts = &u->ignored.parts;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(u->recording.mesh); t++) {
         uint32_t corners[3];
@@ -62,7 +62,7 @@ static bool choose_parts(const part_names *parts, const char *text, bool *chosen
     return true;
 }
 
-static bool pin_parts(untangle_run *u, io_error *error) {
+static bool pin_parts(untangle_state *u, io_error *error) {
     const part_names *parts = &u->ignored.parts;
     const part_pairs_list *pinned = &u->options->pinned;
     bool *chosen = io_zeroed(((size_t)parts->count + 1) * sizeof *chosen);
@@ -75,7 +75,7 @@ static bool pin_parts(untangle_run *u, io_error *error) {
 }
 
 /* The model moves, and no other object does. */
-static bool pin_vertices(untangle_run *u, io_error *error) {
+static bool pin_vertices(untangle_state *u, io_error *error) {
     const uint32_t count = vertex_count_of(u), own = u->recording.objects[0].vertex_count;
     bool any_free = false;
     if (u->options->pinned.count == 0 && count == own) return true;
@@ -97,7 +97,7 @@ static bool take_length(const char *option, const length_given *given, const len
     return io_fail(error, "%s %s", option, reason.text);
 }
 
-static bool take_lengths(untangle_run *u, io_error *error) {
+static bool take_lengths(untangle_state *u, io_error *error) {
     const untangle_options *o = u->options;
     const answer_options unit_of = {.unit = o->unit};
     u->answer.unit = answer_options_unit(&unit_of, &u->recording);
@@ -105,7 +105,7 @@ static bool take_lengths(untangle_run *u, io_error *error) {
            take_length("--spread", &o->spread, &u->answer.unit, &u->spread, error);
 }
 
-static bool create_detector(untangle_run *u, io_error *error) {
+static bool create_detector(untangle_state *u, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = u->answer.gap;
     ignore_pairs_choose(&u->ignored, &options);
@@ -115,7 +115,7 @@ static bool create_detector(untangle_run *u, io_error *error) {
            api_failed(u, error);
 }
 
-static bool allocate_positions(untangle_run *u, io_error *error) {
+static bool allocate_positions(untangle_state *u, io_error *error) {
     const size_t n = (size_t)vertex_count_of(u) * 3 + 1;
     const bool several = u->answer.count > 1;
     double **const always[] = {&u->positions, &u->result},
@@ -132,7 +132,7 @@ static bool allocate_positions(untangle_run *u, io_error *error) {
     return allocated || io_fail(error, "out of memory");
 }
 
-static bool choose_frames(untangle_run *u, io_error *error) {
+static bool choose_frames(untangle_state *u, io_error *error) {
     const recording *r = &u->recording;
     if (!frame_range_choose(&u->options->frames, r->frame_numbers, r->frame_count, &u->answer.choice, error))
         return false;
@@ -140,12 +140,12 @@ static bool choose_frames(untangle_run *u, io_error *error) {
     return untangle_output_fits(u->options->output_path, &r->objects[0], u->answer.count, error);
 }
 
-static bool open_json(untangle_run *u, io_error *error) {
+static bool open_json(untangle_state *u, io_error *error) {
     const char *path = u->options->json_path;
     return path == NULL || output_file_open(path, &u->json_file) || io_fail_write(error, path);
 }
 
-static bool prepare_run(untangle_run *u, io_error *error) {
+static bool prepare_run(untangle_state *u, io_error *error) {
     u->answer.recording = &u->recording;
     u->answer.ignored = &u->ignored;
     u->answer.seconds = u->options->seconds;
@@ -158,29 +158,55 @@ static bool prepare_run(untangle_run *u, io_error *error) {
            open_json(u, error);
 }
 
+static double distance_between(const double *a, const double *b) {
+    const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+/* Where edges are shorter than the gap, features that are neighbours by one more edge are nearer than it. */
+static void warn_of_gap(untangle_state *u) {
+    const cscd_mesh *mesh = u->recording.mesh;
+    const uint32_t own = u->recording.objects[0].vertex_count;
+    uint32_t count = 0, shorter = 0;
+    char text[LENGTH_TEXT_SIZE];
+    if (u->options->quiet || u->answer.gap == 0.0) return;
+    recording_rest(&u->recording, u->positions);
+    for (uint32_t edge = 0; edge < cscd_mesh_edge_count(mesh); edge++) {
+        uint32_t ends[2];
+        cscd_mesh_edge(mesh, edge, ends);
+        if (ends[0] >= own) continue;
+        const double *a = u->positions + (size_t)ends[0] * 3, *b = u->positions + (size_t)ends[1] * 3;
+        count++;
+        shorter += distance_between(a, b) < u->answer.gap;
+    }
+    if (shorter > 0)
+        warn("%u of %u edges are shorter than the gap of %s, so what lies around them has to grow", shorter,
+             count, length_text(u->answer.gap, &u->answer.unit, text));
+}
+
 /* ---- a frame -------------------------------------------------------------------------------------------- */
 
-static uint32_t frame_at(const untangle_run *u, uint32_t i) {
+static uint32_t frame_at(const untangle_state *u, uint32_t i) {
     return u->answer.choice.first + i * u->answer.choice.step;
 }
 
-static int32_t number_at(const untangle_run *u, uint32_t i) {
+static int32_t number_at(const untangle_state *u, uint32_t i) {
     return u->recording.frame_numbers[frame_at(u, i)];
 }
 
 /* What the file will hold is what is untangled. */
-static void round_model(const untangle_run *u, double *x) {
+static void round_model(const untangle_state *u, double *x) {
     for (size_t i = 0; u->output.holds_floats && i < model_size(u); i++) x[i] = (double)(float)x[i];
 }
 
-static bool read_frame(untangle_run *u, uint32_t i, io_error *error) {
+static bool read_frame(untangle_state *u, uint32_t i, io_error *error) {
     if (!recording_read(&u->recording, frame_at(u, i), u->positions, error)) return false;
     round_model(u, u->positions);
     return true;
 }
 
 /* Counts what intersects in positions. */
-static bool count_pairs(untangle_run *u, const double *x, size_t *count, io_error *error) {
+static bool count_pairs(untangle_state *u, const double *x, size_t *count, io_error *error) {
     cscd_intersection_options options = cscd_intersection_defaults();
     cscd_intersections found;
     options.answer = CSCD_ANSWER_COUNT;
@@ -197,7 +223,7 @@ typedef struct typed_positions {
     cscd_view views[2];
 } typed_positions;
 
-static const cscd_view *view_positions(const untangle_run *u, int set, const double *x,
+static const cscd_view *view_positions(const untangle_state *u, int set, const double *x,
                                        typed_positions *out) {
     const size_t own = model_size(u), all = (size_t)vertex_count_of(u) * 3;
     if (!u->output.holds_floats) {
@@ -213,7 +239,7 @@ static const cscd_view *view_positions(const untangle_run *u, int set, const dou
 }
 
 /* Calls the library for the positions, and takes what it has reached. */
-static cscd_status reach_result(untangle_run *u, const cscd_untangle_options *options,
+static cscd_status reach_result(untangle_state *u, const cscd_untangle_options *options,
                                 cscd_untangled *found) {
     const size_t own = model_size(u), all = (size_t)vertex_count_of(u) * 3;
     typed_positions positions, result;
@@ -232,7 +258,7 @@ static cscd_status reach_result(untangle_run *u, const cscd_untangle_options *op
     return status;
 }
 
-static bool call_library(untangle_run *u, bool starts, cscd_untangled *found, io_error *error) {
+static bool call_library(untangle_state *u, bool starts, cscd_untangled *found, io_error *error) {
     cscd_untangle_options options = cscd_untangle_defaults();
     typed_positions start, input;
     options.weights = u->weights;
@@ -254,7 +280,7 @@ static int compare_left(const void *a, const void *b) {
 }
 
 /* The pairs that are left, by parts; none are known where they do not fit the memory. */
-static bool find_left(untangle_run *u, untangled_frame *frame, io_error *error) {
+static bool find_left(untangle_state *u, untangled_frame *frame, io_error *error) {
     cscd_intersection_options options = cscd_intersection_defaults();
     cscd_intersections found;
     options.parts = true;
@@ -275,7 +301,7 @@ static bool find_left(untangle_run *u, untangled_frame *frame, io_error *error) 
 }
 
 /* Most programs read the numbers of a text as floats. */
-static bool look_as_floats(untangle_run *u, untangled_frame *frame, io_error *error) {
+static bool look_as_floats(untangle_state *u, untangled_frame *frame, io_error *error) {
     const size_t n = (size_t)vertex_count_of(u) * 3;
     size_t pairs = 0;
     if (!frame->found.clean || u->output.holds_floats || u->answer.count > 1) return true;
@@ -287,13 +313,13 @@ static bool look_as_floats(untangle_run *u, untangled_frame *frame, io_error *er
     return true;
 }
 
-static void mark_moved(untangle_run *u) {
+static void mark_moved(untangle_state *u) {
     for (size_t v = 0; v < vertex_count_of(u); v++)
         u->moved[v] = memcmp(u->result + 3 * v, u->positions + 3 * v, sizeof(double[3])) != 0;
 }
 
 /* Takes the result of a frame into the answer. */
-static bool take_result(untangle_run *u, uint32_t i, const cscd_untangled *found, io_error *error) {
+static bool take_result(untangle_state *u, uint32_t i, const cscd_untangled *found, io_error *error) {
     untangle_answer *a = &u->answer;
     untangled_frame *frame = &a->frames[i];
     const bool first = a->first == a->end;
@@ -305,7 +331,7 @@ static bool take_result(untangle_run *u, uint32_t i, const cscd_untangled *found
 }
 
 /* The frame's result is where the next one starts. */
-static void keep_start(untangle_run *u, uint32_t i, bool clean) {
+static void keep_start(untangle_state *u, uint32_t i, bool clean) {
     const size_t size = (size_t)vertex_count_of(u) * 3 * sizeof *u->result;
     u->has_start = clean;
     if (!clean || u->answer.count == 1) return;
@@ -318,7 +344,7 @@ static void keep_start(untangle_run *u, uint32_t i, bool clean) {
 }
 
 /* Untangles a frame, and writes it. An interrupt leaves it out, unless it is the only one. */
-static bool untangle_frame(untangle_run *u, uint32_t i, io_error *error) {
+static bool untangle_frame(untangle_state *u, uint32_t i, io_error *error) {
     cscd_untangled found;
     io_error reason = {""};
     if (!read_frame(u, i, error)) return false;
@@ -334,12 +360,12 @@ static bool untangle_frame(untangle_run *u, uint32_t i, io_error *error) {
 
 /* ---- all frames ----------------------------------------------------------------------------------------- */
 
-static void show_progress(untangle_run *u, uint32_t done) {
+static void show_progress(untangle_state *u, uint32_t done) {
     terminal_progress_update(&u->progress, done, u->answer.count, "untangle");
 }
 
 /* The first frame that does not intersect as it is, else the first of all. */
-static bool find_anchor(untangle_run *u, uint32_t *anchor, io_error *error) {
+static bool find_anchor(untangle_state *u, uint32_t *anchor, io_error *error) {
     *anchor = 0;
     for (uint32_t i = 0; i < u->answer.count && u->answer.count > 1 && !interrupted(); i++) {
         size_t pairs;
@@ -352,7 +378,7 @@ static bool find_anchor(untangle_run *u, uint32_t *anchor, io_error *error) {
     return true;
 }
 
-static bool go_forwards(untangle_run *u, uint32_t anchor, io_error *error) {
+static bool go_forwards(untangle_state *u, uint32_t anchor, io_error *error) {
     u->has_start = false;
     for (uint32_t i = anchor; i < u->answer.count && !interrupted(); i++) {
         show_progress(u, i - anchor);
@@ -362,7 +388,7 @@ static bool go_forwards(untangle_run *u, uint32_t anchor, io_error *error) {
 }
 
 /* From the first frame that became clean to those before it. */
-static bool go_backwards(untangle_run *u, uint32_t anchor, io_error *error) {
+static bool go_backwards(untangle_state *u, uint32_t anchor, io_error *error) {
     const size_t size = (size_t)vertex_count_of(u) * 3 * sizeof *u->result;
     if (u->first_clean_frame == UINT32_MAX || u->first_clean_frame == 0) return true;
     u->has_start = true;
@@ -375,7 +401,7 @@ static bool go_backwards(untangle_run *u, uint32_t anchor, io_error *error) {
     return true;
 }
 
-static bool untangle_frames(untangle_run *u, io_error *error) {
+static bool untangle_frames(untangle_state *u, io_error *error) {
     uint32_t anchor;
     return find_anchor(u, &anchor, error) && go_forwards(u, anchor, error) && go_backwards(u, anchor, error);
 }
@@ -383,7 +409,7 @@ static bool untangle_frames(untangle_run *u, io_error *error) {
 /* ---- the end -------------------------------------------------------------------------------------------- */
 
 /* What is not clean is kept only if that was asked for. */
-static bool close_output(untangle_run *u, io_error *error) {
+static bool close_output(untangle_state *u, io_error *error) {
     untangle_answer *a = &u->answer;
     const bool kept = a->end > a->first && (untangle_answer_clean(a) || u->options->partial);
     if (!untangle_output_close(&u->output, a->first, kept ? a->end - a->first : 0, error)) return false;
@@ -391,7 +417,7 @@ static bool close_output(untangle_run *u, io_error *error) {
     return true;
 }
 
-static bool write_json(untangle_run *u, io_error *error) {
+static bool write_json(untangle_state *u, io_error *error) {
     if (u->json_file.file == NULL) return true;
     json out = {.file = u->json_file.file};
     untangle_answer_write_json(&u->answer, &out);
@@ -399,7 +425,7 @@ static bool write_json(untangle_run *u, io_error *error) {
     return output_file_close(&u->json_file, OUTPUT_WHOLE) || io_fail_write(error, u->options->json_path);
 }
 
-static void tell_what_was_written(const untangle_run *u) {
+static void tell_what_was_written(const untangle_state *u) {
     const untangle_answer *a = &u->answer;
     const char *path = u->options->output_path;
     if (a->written == NULL)
@@ -415,7 +441,7 @@ static void tell_what_was_written(const untangle_run *u) {
             path);
 }
 
-static void tell_interrupt(const untangle_run *u) {
+static void tell_interrupt(const untangle_state *u) {
     const untangle_answer *a = &u->answer;
     const char *const paths[] = {a->written, u->options->json_path};
     interrupt_tell(&(interrupt_kept){.done = a->end - a->first,
@@ -427,7 +453,7 @@ static void tell_interrupt(const untangle_run *u) {
                                      .path_count = sizeof paths / sizeof *paths});
 }
 
-static int end_run(untangle_run *u, bool ran, const io_error *failure) {
+static int end_run(untangle_state *u, bool ran, const io_error *failure) {
     io_error error = {""};
     if (!ran) u->answer.stopped_by = failure->text;
     if (ran && interrupted()) u->answer.stopped_by = "interrupted";
@@ -445,7 +471,7 @@ static int end_run(untangle_run *u, bool ran, const io_error *failure) {
     return untangle_answer_clean(&u->answer) ? EXIT_RAN : EXIT_CONTACT;
 }
 
-static void free_run(untangle_run *u) {
+static void free_run(untangle_state *u) {
     if (u->json_file.file != NULL) output_file_close(&u->json_file, OUTPUT_ABANDONED);
     untangle_output_close(&u->output, 0, 0, NULL);
     for (uint32_t i = 0; u->answer.frames != NULL && i < u->answer.count; i++) free(u->answer.frames[i].left);
@@ -461,7 +487,7 @@ static void free_run(untangle_run *u) {
 }
 
 int untangle_run_on(const untangle_options *options) {
-    untangle_run u = {.options = options};
+    untangle_state u = {.options = options};
     io_error error = {""};
     recording_options source = options->source;
     int code;
@@ -470,6 +496,7 @@ int untangle_run_on(const untangle_options *options) {
     if (!recording_open(&source, &u.recording, &error)) return fail_input("%s", error.text);
     interrupt_catch();
     if (prepare_run(&u, &error)) {
+        warn_of_gap(&u);
         terminal_progress_begin(&u.progress, options->quiet);
         const bool ran = untangle_frames(&u, &error) || interrupt_ended_wait();
         terminal_progress_end(&u.progress);
