@@ -15,12 +15,16 @@ enum { OF_VERTICES, OF_CURVES, OF_PARTNERS, LISTS };
 /* Points that are nearer than this to their places, in edge lengths, go along the normal there. */
 static const double near_place = 1e-3;
 
+/* The way out of a closed component has at least this share along the normal. */
+static const double least_slope = 0.1;
+
 static array_list list_arrays(lens_finder *f) {
     const cscd_mesh *mesh = f->w->mesh;
     const size_t n = mesh->vertex_count, t = mesh->triangle_count;
-    return (array_list){{ARRAY(f->patches, n), ARRAY(f->wrong, n), ARRAY(f->crossings, mesh->edge_count),
-                         ARRAY(f->stamps, t), ARRAY(f->queue, n > t ? n : t), ARRAY(f->areas, n),
-                         ARRAY(f->colours, n), ARRAY(f->distances, 2 * n)}};
+    return (array_list){{ARRAY(f->patches, n), ARRAY(f->wrong, n), ARRAY(f->sides, n),
+                         ARRAY(f->crossings, mesh->edge_count), ARRAY(f->stamps, t),
+                         ARRAY(f->queue, n > t ? n : t), ARRAY(f->areas, n), ARRAY(f->colours, n),
+                         ARRAY(f->distances, 2 * n)}};
 }
 
 bool lens_finder_make(lens_finder *f, untangle_work *w) {
@@ -317,9 +321,10 @@ static bool triangle_is_closed(const lens_finder *f, uint32_t triangle) {
     return mesh->components[mesh->triangle_components[triangle]].closed_manifold;
 }
 
-/* Writes the place, and the way there from a point at `from`. In a closed component the way leads outwards. */
+/* Writes the place, and the way there from a point at `from`. The way out of a closed component leads along its normals, and from
+ * where it is inside out against them; side is that of the point. */
 static void take_place(const lens_finder *f, const double *x, const double *from, const set_place *place,
-                       bool buried, lens_point *out) {
+                       int side, lens_point *out) {
     const uint32_t *corners = f->w->mesh->triangles[place->triangle];
     double normal[3], way[3] = {-from[0], -from[1], -from[2]};
     lens_normal(f, x, place->triangle, normal);
@@ -332,8 +337,9 @@ static void take_place(const lens_finder *f, const double *x, const double *from
     const bool far = length > near_place * f->w->graph.edge_length;
     for (int k = 0; k < 3; k++) out->direction[k] = far ? way[k] / length : normal[k];
     out->thickness = length;
-    if (buried && triangle_is_closed(f, place->triangle) && vec3_dot(out->direction, normal) < 0.1) {
-        memcpy(out->direction, normal, sizeof normal);
+    if (side == 0 || !triangle_is_closed(f, place->triangle)) return;
+    if (side * vec3_dot(out->direction, normal) < least_slope) {
+        for (int k = 0; k < 3; k++) out->direction[k] = side * normal[k];
         out->thickness = 0.0;
     }
 }
@@ -383,7 +389,7 @@ static void follow_axis(const lens_finder *f, const double *x, const double *fro
                         lens_point *point) {
     const set_place hit = triangle_set_farthest_hit(&f->set, from, axis);
     if (hit.triangle != UINT32_MAX) {
-        take_place(f, x, from, &hit, false, point);
+        take_place(f, x, from, &hit, 0, point);
         point->thickness = hit.distance;
     } else {
         point->thickness =
@@ -414,7 +420,7 @@ static bool add_points_of_patch(lens_finder *f, const cscd_intersections *found,
         const double *from = x + 3 * (size_t)v;
         const set_place place = triangle_set_nearest(&f->set, from);
         lens_point point = {.vertices = {v, v}, .weights = {1.0, 0.0}};
-        take_place(f, x, from, &place, true, &point);
+        take_place(f, x, from, &place, f->sides[v], &point);
         if (along) follow_axis(f, x, from, axis, &point);
         if (has_vertex(f, &point, v)) continue;
         if (!lens_finder_add_point(f, &point)) return false;
@@ -424,11 +430,21 @@ static bool add_points_of_patch(lens_finder *f, const cscd_intersections *found,
 
 /* ---- edges ----------------------------------------------------------------------------------------------- */
 
+/* On which side of the triangle at a curve point is the edge behind the point: 1 inside, -1 outside. */
+static int side_behind(const lens_finder *f, const double *x, const cscd_curve_point *point) {
+    const uint32_t *ends = f->w->mesh->edges[point->edge];
+    double normal[3], along[3];
+    lens_normal(f, x, point->triangle, normal);
+    vec3_subtract(x + 3 * (size_t)ends[1], x + 3 * (size_t)ends[0], along);
+    return vec3_dot(along, normal) < 0.0 ? 1 : -1;
+}
+
 /* A piece of an edge between two curve points. */
 static bool add_point_of_edge(lens_finder *f, const double *x, const cscd_curve_point *a,
                               const cscd_curve_point *b) {
     const uint32_t *ends = f->w->mesh->edges[a->edge];
     const double s = 0.5 * (a->s + b->s);
+    const int side = side_behind(f, x, a);
     double from[3];
     for (int k = 0; k < 3; k++)
         from[k] = (1.0 - s) * x[3 * (size_t)ends[0] + (size_t)k] + s * x[3 * (size_t)ends[1] + (size_t)k];
@@ -446,7 +462,7 @@ static bool add_point_of_edge(lens_finder *f, const double *x, const cscd_curve_
     if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)kept, 1)) return false;
     const set_place place = triangle_set_nearest(&f->set, from);
     lens_point point = {.vertices = {ends[0], ends[1]}, .weights = {1.0 - s, s}};
-    take_place(f, x, from, &place, true, &point);
+    take_place(f, x, from, &place, side, &point);
     return lens_finder_add_point(f, &point);
 }
 

@@ -32,6 +32,7 @@ typedef struct lens_finder {
     uint32_t *
         patches; /* per vertex: connected by edges that no curve crosses; the number is a vertex's at first */
     bool *wrong; /* per vertex */
+    int8_t *sides; /* per vertex: 1 in a body, -1 where a body winds around it less than 0 times, else 0 */
     uint32_t *crossings; /* per edge: how many curve points it has */
     uint32_t *stamps;    /* per triangle */
     uint32_t *queue;     /* per vertex or triangle */

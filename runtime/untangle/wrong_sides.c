@@ -33,19 +33,20 @@ static void join_patches(lens_finder *f) {
 
 /* ---- closed components ------------------------------------------------------------------------------- */
 
-static bool patch_is_buried(const cscd_patches *patches, uint32_t patch) {
+/* Returns 1 for a patch in a body, -1 for one around which its body winds less than 0 times, else 0. */
+static int patch_side(const cscd_patches *patches, uint32_t patch) {
+    if (patch == UINT32_MAX) return 0;
     const cscd_patch *p = &patches->items[patch];
-    if (p->own != 0) return true;
     for (uint32_t i = 0; i < p->winding_count; i++) {
-        if (patches->windings[p->first_winding + i].number >= 1) return true;
+        if (patches->windings[p->first_winding + i].number >= 1) return 1;
     }
-    return false;
+    return p->own < 0 ? -1 : p->own > 0 ? 1 : 0;
 }
 
 static void mark_buried(lens_finder *f, const cscd_patches *patches) {
     for (uint32_t v = 0; v < f->w->mesh->vertex_count; v++) {
-        const uint32_t patch = patches->vertex_patches[v];
-        f->wrong[v] = patch != UINT32_MAX && patch_is_buried(patches, patch);
+        f->sides[v] = (int8_t)patch_side(patches, patches->vertex_patches[v]);
+        f->wrong[v] = f->sides[v] != 0;
     }
 }
 
@@ -155,7 +156,7 @@ static void take_colours(lens_finder *f) {
 
 static const double mostly = 0.55;
 
-static void look_out(lens_finder *f, const cscd_patches *patches) {
+static void look_out(lens_finder *f) {
     const cscd_mesh *mesh = f->w->mesh;
     double *all = f->areas, *buried = f->areas + mesh->component_count;
     if (2 * (size_t)mesh->component_count > mesh->vertex_count) return;
@@ -164,10 +165,8 @@ static void look_out(lens_finder *f, const cscd_patches *patches) {
         const uint32_t first = mesh->vertex_star_offsets[v];
         if (first == mesh->vertex_star_offsets[v + 1]) continue;
         const uint32_t component = mesh->triangle_components[mesh->vertex_stars[first]];
-        const uint32_t patch = patches->vertex_patches[v];
         all[component] += f->w->graph.masses[v];
-        if (patch != UINT32_MAX && patch_is_buried(patches, patch))
-            buried[component] += f->w->graph.masses[v];
+        if (f->sides[v] > 0) buried[component] += f->w->graph.masses[v];
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         const uint32_t first = mesh->vertex_star_offsets[v];
@@ -175,9 +174,7 @@ static void look_out(lens_finder *f, const cscd_patches *patches) {
         const uint32_t component = mesh->triangle_components[mesh->vertex_stars[first]];
         if (!mesh->components[component].closed_manifold || !(buried[component] > mostly * all[component]))
             continue;
-        const uint32_t patch = patches->vertex_patches[v];
-        f->wrong[v] =
-            f->colours[f->patches[v]] != NO_COLOUR && patch != UINT32_MAX && !patch_is_buried(patches, patch);
+        f->wrong[v] = f->colours[f->patches[v]] != NO_COLOUR && f->sides[v] == 0;
     }
 }
 
@@ -187,7 +184,7 @@ bool wrong_sides_find(lens_finder *f, const cscd_intersections *found) {
     mark_buried(f, found->patches);
     if (!list_neighbours(f, found->curves) || !colour_patches(f)) return false;
     take_colours(f);
-    look_out(f, found->patches);
+    look_out(f);
     f->wrong_count = 0;
     for (uint32_t v = 0; v < f->w->mesh->vertex_count; v++) f->wrong_count += f->wrong[v];
     return true;
