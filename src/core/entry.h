@@ -30,7 +30,7 @@
  * it. So every entry sets that environment and puts the host's back when it leaves, and while the host's own code runs
  * in a callback. The flags of the host come back as they were: what the library's arithmetic raises is no news to it. */
 typedef struct float_environment {
-    uint64_t bits; /* in the form of the processor; elsewhere only the rounding mode */
+    uint64_t bits; /* in the form of the processor; elsewhere in that of C */
 } float_environment;
 
 #if defined(__SSE2__)
@@ -67,15 +67,20 @@ static inline void float_environment_set(float_environment e) {
 
 #else
 
+/* The rounding mode, and the flags in the upper half. */
 #define FLOAT_DEFAULT ((uint64_t)FE_TONEAREST)
-#define FLOAT_FLAGS   ((uint64_t)0)
+#define FLOAT_FLAGS   ((uint64_t)0xffffffff << 32)
 
 static inline float_environment float_environment_get(void) {
-    return (float_environment){(uint64_t)fegetround()};
+    fexceptflag_t flags;
+    fegetexceptflag(&flags, FE_ALL_EXCEPT);
+    return (float_environment){(uint64_t)flags << 32 | (uint32_t)fegetround()};
 }
 
 static inline void float_environment_set(float_environment e) {
-    fesetround((int)e.bits);
+    const fexceptflag_t flags = (fexceptflag_t)(e.bits >> 32);
+    fesetround((int)(uint32_t)e.bits);
+    fesetexceptflag(&flags, FE_ALL_EXCEPT);
 }
 
 #endif
