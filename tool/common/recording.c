@@ -315,6 +315,13 @@ bool recording_read(recording *r, uint32_t frame, double *positions, io_error *e
     return true;
 }
 
+void recording_end_reading(recording *r) {
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        animation_close(r->objects[i].frames);
+        r->objects[i].frames = NULL;
+    }
+}
+
 void recording_expect(recording *r, uint32_t frame) {
     for (uint32_t i = 0; i < r->object_count; i++)
         if (r->objects[i].frames != NULL) animation_expect(r->objects[i].frames, frame);

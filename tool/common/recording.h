@@ -171,6 +171,9 @@ void recording_close(recording *r);
  * and vertices as the file numbers them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 
+/* Closes the files of the frames, of which no more is read. */
+void recording_end_reading(recording *r);
+
 /* Says that a frame is read soon, as animation_expect. */
 void recording_expect(recording *r, uint32_t frame);
 

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Where a coordinate of a vertex stands in a file, and how. */
+/* Where a coordinate of a vertex or of a normal stands in a file, and how. */
 typedef struct coordinate_place {
     enum {
         COORDINATE_NOWHERE, /* it is made of something else, or of an integer */
@@ -34,6 +34,8 @@ typedef struct file_reader {
     mesh_parts_by parts_by;          /* of meshes: what their parts are */
     coordinate_place coordinates[3]; /* of meshes: of the vertex that is read */
     growable *places;                /* takes these three of all vertices; NULL: nobody asks */
+    growable *
+        normal_places; /* and three of the normal of each face that has one, where that follows from its vertices */
 } file_reader;
 
 /* On false *reader owns nothing. */

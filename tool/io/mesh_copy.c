@@ -5,6 +5,7 @@
 #include "tool/io/format_reader.h"
 #include "tool/io/output_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,13 +14,15 @@
 struct mesh_copy {
     file_reader reader; /* with the bytes */
     mesh_file mesh;
-    growable places; /* of coordinate_place[3] */
+    growable places;        /* of coordinate_place[3] */
+    growable normal_places; /* the same, of faces, in the file's order */
     bool floats;
     char path[];
 };
 
 bool mesh_copy_knows(mesh_format format) {
-    return format == MESH_FORMAT_OBJ || format == MESH_FORMAT_OFF || format == MESH_FORMAT_PLY;
+    return format == MESH_FORMAT_OBJ || format == MESH_FORMAT_PLY || format == MESH_FORMAT_OFF ||
+           format == MESH_FORMAT_STL;
 }
 
 static const coordinate_place *places_of(const mesh_copy *copy, uint32_t vertex) {
@@ -60,9 +63,11 @@ bool mesh_copy_open(const char *path, mesh_copy **out, io_error *error) {
     if (copy == NULL) return io_fail(error, "%s: out of memory", path);
     memcpy(copy->path, path, path_size);
     copy->places = growable_of(sizeof(coordinate_place[3]));
+    copy->normal_places = growable_of(sizeof(coordinate_place[3]));
     bool opened = file_reader_open(&copy->reader, copy->path, error);
     if (opened) {
         copy->reader.places = &copy->places;
+        copy->reader.normal_places = &copy->normal_places;
         opened = mesh_reader_read(&copy->reader, &copy->mesh) && check_places(copy, error);
     }
     if (opened)
@@ -77,6 +82,7 @@ void mesh_copy_close(mesh_copy *copy) {
     file_reader_close(&copy->reader);
     mesh_file_free(&copy->mesh);
     growable_free(&copy->places);
+    growable_free(&copy->normal_places);
     free(copy);
 }
 
@@ -136,20 +142,62 @@ static void sort_axes(const coordinate_place *places, int axes[3]) {
     }
 }
 
+/* Has any of the vertices from v on, count of them, moved? */
+static bool any_moved(const mesh_copy *copy, const double *positions, uint32_t v, uint32_t count) {
+    return memcmp(positions + (size_t)v * 3, copy->mesh.positions + (size_t)v * 3,
+                  (size_t)count * 3 * sizeof *positions) != 0;
+}
+
+/* The unit normal of the triangle of three vertices; 0 where it has none. */
+static void find_normal(const double *x, double normal[3]) {
+    double a[3], b[3], square = 0.0;
+    for (int k = 0; k < 3; k++) {
+        a[k] = x[3 + k] - x[k];
+        b[k] = x[6 + k] - x[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        square += normal[k] * normal[k];
+    }
+    for (int k = 0; k < 3; k++) normal[k] = square > 0.0 ? (double)(float)(normal[k] / sqrt(square)) : 0.0;
+}
+
+/* Writes the normal before the vertex v, if it is that of a face which begins there and has moved. */
+static void print_normal(const mesh_copy *copy, FILE *file, const double *positions, uint32_t v,
+                         size_t *normals, size_t *from) {
+    const coordinate_place *places = (const coordinate_place *)copy->normal_places.data + *normals * 3;
+    double normal[3];
+    if (*normals == copy->normal_places.count || places->at > places_of(copy, v)->at) return;
+    ++*normals;
+    if (v + 3 > copy->mesh.vertex_count || !any_moved(copy, positions, v, 3)) return;
+    find_normal(positions + (size_t)v * 3, normal);
+    for (int axis = 0; axis < 3; axis++) {
+        copy_bytes(copy, file, from, places[axis].at);
+        write_coordinate(file, &places[axis], normal[axis]);
+        *from += places[axis].size;
+    }
+}
+
+static void print_vertex(const mesh_copy *copy, FILE *file, const double *positions, uint32_t v,
+                         size_t *from) {
+    const coordinate_place *places = places_of(copy, v);
+    int axes[3];
+    sort_axes(places, axes);
+    for (int i = 0; i < 3; i++) {
+        const size_t at = (size_t)v * 3 + (size_t)axes[i];
+        const coordinate_place *place = &places[axes[i]];
+        if (memcmp(&positions[at], &copy->mesh.positions[at], sizeof *positions) == 0) continue;
+        copy_bytes(copy, file, from, place->at);
+        write_coordinate(file, place, positions[at]);
+        *from += place->size;
+    }
+}
+
 static void print_copy(const mesh_copy *copy, FILE *file, const double *positions) {
-    size_t from = 0;
+    size_t from = 0, normals = 0;
     for (uint32_t v = 0; v < copy->mesh.vertex_count; v++) {
-        const coordinate_place *places = places_of(copy, v);
-        int axes[3];
-        sort_axes(places, axes);
-        for (int i = 0; i < 3; i++) {
-            const size_t at = (size_t)v * 3 + (size_t)axes[i];
-            const coordinate_place *place = &places[axes[i]];
-            if (memcmp(&positions[at], &copy->mesh.positions[at], sizeof *positions) == 0) continue;
-            copy_bytes(copy, file, &from, place->at);
-            write_coordinate(file, place, positions[at]);
-            from += place->size;
-        }
+        print_normal(copy, file, positions, v, &normals, &from);
+        print_vertex(copy, file, positions, v, &from);
     }
     copy_bytes(copy, file, &from, copy->reader.size);
 }

@@ -1,5 +1,5 @@
 /* Copies of mesh files in which vertices have other places. All else stays as it is, byte for byte: names,
- * materials, texture coordinates, polygons, comments. */
+ * materials, texture coordinates, polygons, comments; but for the normals of an STL, which follow. */
 #pragma once
 
 #include "tool/io/io.h"
@@ -10,7 +10,7 @@
 typedef struct mesh_copy mesh_copy;
 
 /* The formats that can be copied so, for people. */
-#define MESH_COPY_FORMATS "OBJ, OFF or PLY"
+#define MESH_COPY_FORMATS "OBJ, PLY, OFF or STL"
 
 /* True if files of the format can be copied so. */
 bool mesh_copy_knows(mesh_format format);

@@ -57,8 +57,26 @@ static bool recognise_stl(const file_reader *reader) {
 
 /* ---- binary ------------------------------------------------------------------------------------------ */
 
-static bool read_binary_triangle(file_reader *reader, mesh_builder *builder) {
+/* Notes where three numbers stand. */
+static bool note_normal(file_reader *reader, const coordinate_place places[3]) {
+    if (reader->normal_places == NULL) return true;
+    void *normal = growable_push(reader->normal_places);
+    if (normal == NULL) return file_reader_fail_here(reader, "out of memory for normals");
+    memcpy(normal, places, 3 * sizeof *places);
+    return true;
+}
+
+static bool pass_binary_normal(file_reader *reader) {
+    coordinate_place places[3];
+    for (size_t axis = 0; axis < 3; axis++)
+        places[axis] =
+            (coordinate_place){COORDINATE_LITTLE, reader->at + axis * sizeof(float), sizeof(float)};
     reader->at += NORMAL_SIZE;
+    return note_normal(reader, places);
+}
+
+static bool read_binary_triangle(file_reader *reader, mesh_builder *builder) {
+    if (!pass_binary_normal(reader)) return false;
     if (!mesh_builder_begin_face(builder)) return false;
     for (int corner = 0; corner < 3; corner++) {
         double position[3];
@@ -69,6 +87,7 @@ static bool read_binary_triangle(file_reader *reader, mesh_builder *builder) {
             float value;
             memcpy(&value, &bits, sizeof value);
             position[axis] = (double)value;
+            reader->coordinates[axis] = (coordinate_place){COORDINATE_LITTLE, reader->at, sizeof value};
             reader->at += sizeof value;
         }
         if (!mesh_builder_add_vertex(builder, position) || !mesh_builder_add_corner(builder, vertex))
@@ -138,7 +157,7 @@ static bool read_text_vertex(file_reader *reader, mesh_builder *builder) {
     const uint32_t vertex = (uint32_t)builder->positions.count;
     for (int axis = 0; axis < 3; axis++) {
         text_seek_token(reader);
-        if (!text_number(reader, names[axis], &position[axis])) return false;
+        if (!text_coordinate(reader, axis, names[axis], &position[axis])) return false;
     }
     return mesh_builder_add_vertex(builder, position) && mesh_builder_add_corner(builder, vertex);
 }
@@ -146,9 +165,15 @@ static bool read_text_vertex(file_reader *reader, mesh_builder *builder) {
 /* The normal is skipped: it follows from the vertices, and is often wrong or missing. */
 static bool skip_normal(file_reader *reader) {
     text_token token = take_word(reader);
-    if (is_keyword(token, "normal"))
-        for (int axis = 0; axis <= 3; axis++) token = take_word(reader);
-    return is_keyword(token, "outer") || fail_word(reader, token, "outer loop");
+    coordinate_place places[3];
+    const bool has_normal = is_keyword(token, "normal");
+    for (int axis = 0; axis < 3 && has_normal; axis++) {
+        token = take_word(reader);
+        places[axis] = (coordinate_place){COORDINATE_TEXT, reader->mark, token.length};
+    }
+    if (has_normal) token = take_word(reader);
+    if (!is_keyword(token, "outer")) return fail_word(reader, token, "outer loop");
+    return !has_normal || note_normal(reader, places);
 }
 
 /* Reads a facet behind its first word. */

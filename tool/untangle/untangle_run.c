@@ -412,6 +412,7 @@ static bool untangle_frames(untangle_state *u, io_error *error) {
 static bool close_output(untangle_state *u, io_error *error) {
     untangle_answer *a = &u->answer;
     const bool kept = a->end > a->first && (untangle_answer_clean(a) || u->options->partial);
+    recording_end_reading(&u->recording); /* a file that is open may not be replaced on every system */
     if (!untangle_output_close(&u->output, a->first, kept ? a->end - a->first : 0, error)) return false;
     if (kept) a->written = u->options->output_path;
     return true;
@@ -457,10 +458,12 @@ static int end_run(untangle_state *u, bool ran, const io_error *failure) {
     io_error error = {""};
     if (!ran) u->answer.stopped_by = failure->text;
     if (ran && interrupted()) u->answer.stopped_by = "interrupted";
+    if (!u->options->quiet) {
+        untangle_answer_print(&u->answer);
+        recording_warn(&u->recording);
+    }
     const bool closed = close_output(u, &error);
-    if (!u->options->quiet) untangle_answer_print(&u->answer);
     if (closed) tell_what_was_written(u);
-    if (!u->options->quiet) recording_warn(&u->recording);
     const bool written = write_json(u, closed ? &error : NULL) && closed;
     if (!ran) return fail_input("%s", failure->text);
     if (!written) return fail_input("%s", error.text);
