@@ -132,9 +132,8 @@ static void choose_region(descent *d) {
     for (size_t i = 0; i < d->pair_count; i++) {
         for (int k = 0; k < 4; k++) vertex_region_add(&w->region, &w->graph, d->pairs[i].vertices[k]);
     }
-    const double rings = ceil(d->spread / w->graph.edge_length);
-    vertex_region_grow(&w->region, &w->graph,
-                       rings > RINGS_LEAST ? (uint32_t)min_of(rings, 1000.0) : RINGS_LEAST);
+    const uint32_t rings = elastic_rings(w, d->spread);
+    vertex_region_grow(&w->region, &w->graph, rings > RINGS_LEAST ? rings : RINGS_LEAST);
 }
 
 static bool add_pairs(descent *d) {

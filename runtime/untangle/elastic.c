@@ -3,6 +3,8 @@
 
 #include "src/core/vec3.h"
 
+#include <math.h>
+
 double elastic_value(const untangle_work *w, double spread, const double *u) {
     const vertex_graph *g = &w->graph;
     double of_masses = 0.0, of_edges = 0.0;
@@ -52,4 +54,9 @@ bool elastic_add(untangle_work *w, double spread) {
         }
     }
     return true;
+}
+
+uint32_t elastic_rings(const untangle_work *w, double length) {
+    static const double most = 400.0;
+    return (uint32_t)min_of(ceil(length / w->graph.edge_length), most);
 }

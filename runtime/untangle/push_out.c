@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Rounds that go on although no round since has had fewer pairs. */
-enum { PATIENCE = 14, LOOK_BACK = 4, RINGS_MAX = 400, SMOOTHINGS = 25, RIM = 2 };
+enum { PATIENCE = 14, LOOK_BACK = 4, SMOOTHINGS = 25, RIM = 2 };
 
 /* Fewer wrong points than this share of the fewest so far are progress, too. */
 static const double progress_share = 0.9;
@@ -23,6 +23,9 @@ static const double steepest = 0.4, shortest_step = 0.25;
 
 /* Surfaces go this many times as far apart as they have to keep. */
 static const double past_separation = 1.25;
+
+/* How far vertices go at once to shorten curves, in edge lengths. */
+static const double longest_shortening = 2.0;
 
 typedef struct push_work {
     untangle_work *w;
@@ -69,8 +72,7 @@ static void choose_region(push_work *p) {
             if (point->weights[k] != 0.0) vertex_region_add(&w->region, &w->graph, point->vertices[k]);
         }
     }
-    const double rings = ceil(4.0 * p->spread / w->graph.edge_length);
-    vertex_region_grow(&w->region, &w->graph, (uint32_t)min_of(rings, RINGS_MAX));
+    vertex_region_grow(&w->region, &w->graph, elastic_rings(w, 4.0 * p->spread));
 }
 
 /* Adds one point to the system: stiffness / 2 times the square of the sum of weights * direction * step - thickness. */
@@ -225,9 +227,12 @@ static cscd_status push_once(push_work *p, const cscd_intersections *found, uint
         p->fewest_points = p->lenses.point_count;
         if (p->stuck > 2) p->stuck = 2;
     }
-    choose_relaxed(p, found, p->stuck >= 3 || !points);
-    if (points) {
-        const double least = 3.0 * w->graph.edge_length;
+    choose_relaxed(p, found, p->stuck >= 3 && points);
+    const double least = 3.0 * w->graph.edge_length;
+    if (!points) {
+        status = shorten_curves(w, max_of(p->spread, least), longest_shortening * w->graph.edge_length, p->x);
+        if (status != CSCD_OK) return status;
+    } else {
         p->spread = max_of(p->spread, max_of(least, p->rules->spread * (p->lenses.thickness + beyond)));
         status = solve_step(p, beyond);
         if (status != CSCD_OK) return status;

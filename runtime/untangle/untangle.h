@@ -62,6 +62,9 @@ void elastic_gradient(const untangle_work *w, double spread, const double *u, do
 /* Adds the rows of the region to the system. */
 bool elastic_add(untangle_work *w, double spread);
 
+/* Over how many edges a length reaches. */
+uint32_t elastic_rings(const untangle_work *w, double length);
+
 /* ---- stages -------------------------------------------------------------------------------------------- */
 
 /* Moves clean positions, in place, as near to the goal as motions free of contact lead by themselves. */
@@ -83,6 +86,9 @@ typedef struct push_rules {
     bool smooth_ways; /* where rounds do not help: displacements, not surfaces */
 } push_rules;
 cscd_status push_out(untangle_work *w, const push_rules *rules, double *x, size_t *left);
+
+/* Moves vertices so that intersection curves become shorter, none farther than that. */
+cscd_status shorten_curves(untangle_work *w, double spread, double farthest, double *x);
 
 /* Writes positions at which tangled bodies, components that seams join, are shrunk around their middles, if that makes them clean. Bodies
  * that cross themselves or cannot move are none that it helps. */
