@@ -1,5 +1,6 @@
 """What a command writes takes the place of an older file when it is whole, and "-" is the standard output."""
 import os
+import shutil
 import signal
 import time
 from pathlib import Path
@@ -7,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from support.tool.reading import json_of
-from support.tool.recordings import fold, tetrahedra
+from support.tool.recordings import balls, fold, tetrahedra
 from support.tool.running import finish, limited_to, run, start, usage_error
 
 FULL_DISK = 600
@@ -34,6 +35,8 @@ def fails_on_a_full_disk(line):
     ("sense pair.obj pair.pc2 --quiet --json", "old.json"),
     ("render sheet.obj -o", "old.png"),
     ("replay pair.obj pair.pc2 --quiet --report", "old.html"),
+    ("untangle sheet.obj -o", "old.obj"),
+    ("untangle pair.obj pair.pc2 -o", "old.pc2"),
 ])
 def test_a_full_disk_leaves_the_older_file(line, output):
     """It is there, byte for byte, and nothing beside it."""
@@ -71,6 +74,21 @@ def test_a_killed_replay_leaves_the_older_files():
     process.kill()
     finish(process, code=128 + signal.SIGKILL)
     assert Path("old.json").read_text() == Path("old.csv").read_text() == OLDER and len(os.listdir()) == before + 2
+
+
+def test_inputs_are_replaced_only_by_name():
+    """-o in the words of MODEL or FRAMES is meant; a link to it, or any other input, is not."""
+    balls(1.6).write_mesh("balls.obj")
+    balls(1.6, 2.1).write_cache("balls.pc2")
+    Path("link.obj").symlink_to("balls.obj")
+    usage_error("untangle balls.obj -o link.obj", "-o 'link.obj' would overwrite 'balls.obj'")
+    usage_error("untangle balls.obj --obstacle other=link.obj -o link.obj", "would overwrite")
+    shutil.copy("balls.obj", "mine.obj")
+    run("untangle mine.obj -o mine.obj --quiet")
+    shutil.copy("balls.pc2", "mine.pc2")
+    run("untangle balls.obj mine.pc2 -o mine.pc2 --quiet")
+    assert run("check mine.obj").first_line.startswith("Clean:")
+    assert run("check balls.obj mine.pc2").first_line.startswith("No frame")
 
 
 # ---- the standard output

@@ -123,3 +123,39 @@ def test_an_interrupted_preprocess_writes_nothing():
         if error:
             break
     assert "interrupted; no plan was written" in error and not os.path.exists("wide.plan.ply")
+
+
+def test_an_interrupt_keeps_the_frames_untangled_so_far():
+    """Frames so far stay, as a whole file, with the numbers that they have."""
+    sheet = fold(24, 16, 12)
+    sheet.write_mesh("sheet.obj")
+    sheet.write_cache("sheet.pc2", 4000)
+    process = start("untangle sheet.obj sheet.pc2 -o clean.pc2 --first-frame 10 --json out.json")
+    wait_until(lambda: any(path.stat().st_size > 20000 for path in Path().glob(".cscd-output-*")), process)
+    process.send_signal(signal.SIGINT)
+    answer = finish(process, code=130)
+    root = read_json("out.json")
+    done = len(root["frames"])
+    assert 1 <= done < 4000 and (root["complete"], root["stopped_by"]) == (False, "interrupted")
+    assert answer.first_line.startswith(f"Not finished: interrupted. {done} of 4000 frames done. Clean: ")
+    said = f"cscd: interrupted after {done} of 4000 frames (frames 10 to {done + 9}); "
+    assert f"{said}what was found is kept in clean.pc2, out.json" in answer.error
+    data = Path("clean.pc2").read_bytes()
+    assert struct.unpack("<f", data[20:24]) == (10.0,) and struct.unpack("<i", data[28:32]) == (done,)
+    if done > 1:
+        assert run("check sheet.obj clean.pc2").first_line.startswith("No frame crosses or touches")
+
+
+def test_an_interrupt_of_a_mesh_keeps_the_best_so_far():
+    """The best so far is an answer as any other."""
+    sheet = fold(150, 100, 8)
+    sheet.write_mesh("sheet.obj", 7)
+    process = start("untangle sheet.obj -o out.obj --json out.json")
+    wait_until(lambda: any(Path().glob(".cscd-output-*")), process)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    answer = finish(process, code=130)
+    frames = read_json("out.json")["frames"]
+    assert answer.first_line.startswith("Not finished: interrupted. 1 of 1 frame done. ") and len(frames) == 1
+    assert "cscd: interrupted after 1 of 1 frames" in answer.error and frames[0]["pairs_after"] <= frames[0]["pairs_before"]
+    assert os.path.exists("out.obj") == frames[0]["clean"]

@@ -1,39 +1,15 @@
 """`cscd untangle`: what it says, what it writes, and that what it writes is what it says, by `cscd check`."""
 import os
-import shutil
-import signal
 import struct
-import time
-from math import cos, dist, pi, sin
+from math import dist
 from pathlib import Path
 
 import pytest
 
 from support.tool import mesh_files
 from support.tool.reading import json_of, read_json
-from support.tool.recordings import Recording, fold
-from support.tool.running import fails, finish, limited_to, run, start, usage_error, wait_until
-
-
-def ball(x, rings=10, segments=14):
-    """The points of a ball of radius 1, and its triangles."""
-    places = [(pi * i / rings, 2.0 * pi * j / segments) for i in range(1, rings) for j in range(segments)]
-    points = [(x, 0.1, 1.05), *((x + sin(a) * cos(b), 0.1 + sin(a) * sin(b), 0.05 + cos(a)) for a, b in places), (x, 0.1, -0.95)]
-    last, triangles = len(points) - 1, []
-    for j in range(segments):
-        after = (j + 1) % segments
-        triangles += [(0, 1 + j, 1 + after), (last, last - segments + after, last - segments + j)]
-        for row in range(1, 1 + segments * (rings - 2), segments):
-            triangles += [(row + j, row + segments + j, row + segments + after), (row + j, row + segments + after, row + after)]
-    return points, triangles
-
-
-def balls(*distances):
-    """Two balls in frames in which their middles are so far apart."""
-    points, triangles = ball(0.0)
-    both = triangles + [tuple(corner + len(points) for corner in triangle) for triangle in triangles]
-    return Recording(both, [points + ball(distance)[0] for distance in distances])
-
+from support.tool.recordings import Recording, ball, balls
+from support.tool.running import fails, run, usage_error
 
 COUNT = len(ball(0.0)[0])
 NAMES = ["o Left"] + [""] * (len(ball(0.0)[1]) - 1) + ["o Right"] + [""] * (len(ball(0.0)[1]) - 1)
@@ -282,26 +258,6 @@ def test_a_bad_frame_keeps_those_before():
     assert checked("balls.obj clean.pc2") == "No frame crosses or touches (3 checked)."
 
 
-def test_an_interrupt_keeps_the_frames_so_far():
-    """Frames so far stay, as a whole file, with the numbers that they have."""
-    sheet = fold(24, 16, 12)
-    sheet.write_mesh("sheet.obj")
-    sheet.write_cache("sheet.pc2", 4000)
-    process = start("untangle sheet.obj sheet.pc2 -o clean.pc2 --first-frame 10 --json out.json")
-    wait_until(lambda: any(path.stat().st_size > 20000 for path in Path().glob(".cscd-output-*")), process)
-    process.send_signal(signal.SIGINT)
-    answer = finish(process, code=130)
-    root = read_json("out.json")
-    done = len(root["frames"])
-    assert 1 <= done < 4000 and (root["complete"], root["stopped_by"]) == (False, "interrupted")
-    assert answer.first_line.startswith(f"Not finished: interrupted. {done} of 4000 frames done. Clean: ")
-    said = f"cscd: interrupted after {done} of 4000 frames (frames 10 to {done + 9}); "
-    assert f"{said}what was found is kept in clean.pc2, out.json" in answer.error
-    first, frames = frames_of("clean.pc2")
-    assert (first, len(frames)) == (10, done)
-    assert checked("sheet.obj clean.pc2").startswith("No frame crosses or touches") or done == 1
-
-
 # ---- files
 
 
@@ -318,18 +274,6 @@ def test_names_of_outputs():
     fails("untangle balls.obj -o out.obj --gap 1mm", "--gap 1 mm: the files do not say what one unit of them is")
 
 
-def test_inputs_are_replaced_only_by_name():
-    """-o in the words of MODEL or FRAMES is meant; a link to it, or any other input, is not."""
-    Path("link.obj").symlink_to("balls.obj")
-    usage_error("untangle balls.obj -o link.obj", "-o 'link.obj' would overwrite 'balls.obj'")
-    usage_error("untangle balls.obj --obstacle other=link.obj -o link.obj", "would overwrite")
-    shutil.copy("balls.obj", "mine.obj")
-    run("untangle mine.obj -o mine.obj --quiet")
-    shutil.copy("balls.pc2", "mine.pc2")
-    run("untangle balls.obj mine.pc2 -o mine.pc2 --quiet")
-    assert checked("mine.obj").startswith("Clean:") and checked("balls.obj mine.pc2").startswith("No frame")
-
-
 def test_the_standard_output():
     """- is the mesh, and the text for people goes to the standard error."""
     answer = run("untangle balls.obj -o -")
@@ -337,32 +281,8 @@ def test_the_standard_output():
     assert json_of(run("untangle balls.obj -o out.obj --json -").out)["clean"] is True
 
 
-@pytest.mark.parametrize("line, output", [("balls.obj", "old.obj"), ("balls.obj balls.pc2", "old.pc2")])
-def test_a_full_disk_leaves_the_older_file(line, output):
-    Path(output).write_text("older")
-    before = sorted(os.listdir())
-    error = run(f"untangle {line} -o {output}", code=1, preexec_fn=limited_to(600)).error
-    assert error.count("File too large") == 1
-    assert Path(output).read_text() == "older" and sorted(os.listdir()) == before
-
-
 def test_quiet_says_nothing():
     answer = run("untangle balls.obj -o clean.obj --quiet")
     assert (answer.out, answer.error) == ("", "")
     answer = run("untangle balls.obj -o clean.obj --quiet --time 1e-9", code=3)
     assert answer.out == "" and answer.error.startswith("cscd: clean.obj was not written")
-
-
-def test_an_interrupt_of_one_mesh():
-    """The best so far is an answer as any other."""
-    sheet = fold(150, 100, 8)
-    sheet.write_mesh("sheet.obj", 7)
-    process = start("untangle sheet.obj -o out.obj --json out.json")
-    wait_until(lambda: any(Path().glob(".cscd-output-*")), process)
-    time.sleep(0.3)
-    process.send_signal(signal.SIGINT)
-    answer = finish(process, code=130)
-    frames = read_json("out.json")["frames"]
-    assert answer.first_line.startswith("Not finished: interrupted. 1 of 1 frame done. ") and len(frames) == 1
-    assert "cscd: interrupted after 1 of 1 frames" in answer.error and frames[0]["pairs_after"] <= frames[0]["pairs_before"]
-    assert os.path.exists("out.obj") == frames[0]["clean"]

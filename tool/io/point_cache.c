@@ -416,9 +416,11 @@ static int64_t frame_offset(const point_cache_writer *writer, uint32_t frame_cou
     return start + (int64_t)frame * writer->vertex_count * POINT_CACHE_VERTEX_SIZE;
 }
 
+/* What was written before has to go to the file first, which may be full. */
 static bool seek_to(point_cache_writer *writer, int64_t offset, io_error *error) {
-    return fseeko(writer->out.file, (off_t)offset, SEEK_SET) == 0 ||
-           io_fail(error, "%s: cannot write its frames in another order than theirs: %s", writer->path,
+    if (fseeko(writer->out.file, (off_t)offset, SEEK_SET) == 0) return true;
+    if (errno != ESPIPE) return io_fail_write(error, writer->path);
+    return io_fail(error, "%s: cannot write its frames in another order than theirs: %s", writer->path,
                    strerror(errno));
 }
 

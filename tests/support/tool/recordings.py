@@ -131,6 +131,26 @@ def cube(split):
                      [[(x - 4.0 + 2.1 * k, y + 0.1, z - 0.2) for x, y, z in points] + tetrahedron for k in range(3)])
 
 
+def ball(x, rings=10, segments=14):
+    """The points of a ball of radius 1, and its triangles."""
+    places = [(pi * i / rings, 2.0 * pi * j / segments) for i in range(1, rings) for j in range(segments)]
+    points = [(x, 0.1, 1.05), *((x + sin(a) * cos(b), 0.1 + sin(a) * sin(b), 0.05 + cos(a)) for a, b in places), (x, 0.1, -0.95)]
+    last, triangles = len(points) - 1, []
+    for j in range(segments):
+        after = (j + 1) % segments
+        triangles += [(0, 1 + j, 1 + after), (last, last - segments + after, last - segments + j)]
+        for row in range(1, 1 + segments * (rings - 2), segments):
+            triangles += [(row + j, row + segments + j, row + segments + after), (row + j, row + segments + after, row + after)]
+    return points, triangles
+
+
+def balls(*distances):
+    """Two balls in frames in which their middles are so far apart."""
+    points, triangles = ball(0.0)
+    both = triangles + [tuple(corner + len(points) for corner in triangle) for triangle in triangles]
+    return Recording(both, [points + ball(distance)[0] for distance in distances])
+
+
 def bow_tie():
     """Two closed tetrahedra that share one vertex, 0. One frame."""
     turns = [2.0 * pi * (v % 3) / 3.0 for v in range(1, 7)]
