@@ -1,4 +1,4 @@
-/* Untangling: positions without intersections that are near given ones. docs/solver/untangle.md has a program. */
+/* Untangling: positions without intersections that are near given ones. docs/theory/untangle.md says how. */
 #ifndef CSCD_UNTANGLE_API_H
 #define CSCD_UNTANGLE_API_H
 
@@ -86,7 +86,15 @@ typedef struct cscd_untangled {
  * Where the host cancels, the result is the best so far, and `stopped` says so; the status is CSCD_OK, and
  * cscd_context_detail says who did.
  * INVALID_ARGUMENT also for the methods PUBLISHED and ICCD_PUBLISHED, where `start` is not clean, and for
- * doubles that are infinite as floats. LIST_TOO_LONG: there are more pairs than fit memory. */
+ * doubles in `positions` with floats in `reached`. LIST_TOO_LONG: there are more pairs than fit memory. An
+ * example, in which whatever crosses at x1 parts:
+ *
+ *     cscd_untangled found;
+ *     double apart[3 * VERTICES];
+ *     cscd_status status = cscd_detector_untangle(detector, CSCD_DOUBLES(x1, n), NULL,
+ *                                                 CSCD_MUTABLE_DOUBLES(apart, n), &found);
+ *     if (status == CSCD_OK && !found.clean) printf("%d pairs are left", (int)found.pairs_after);
+ */
 CSCD_API cscd_status cscd_detector_untangle(cscd_detector *detector, const cscd_view *positions,
                                             const cscd_untangle_options *options,
                                             const cscd_mutable_view *reached, cscd_untangled *out);

@@ -143,9 +143,11 @@ static inline uint32_t detector_region_count(const cscd_detector *d) {
     return config_culls(&d->config) ? d->interval.culling.region_count : 0;
 }
 
-/* Does what cscd_detector_find_intersections does, within a call. */
+/* These do what the calls of the API do, within a call. */
 cscd_status detector_find_intersections(cscd_detector *d, const cscd_view *positions,
                                         const cscd_intersection_options *options, cscd_intersections *out);
+cscd_status detector_curve_lengths(cscd_detector *d, const cscd_view *positions,
+                                   const cscd_intersection_options *options, cscd_measures *out);
 
 /* ---- one interval -------------------------------------------------------------------------------------- */
 

@@ -22,6 +22,11 @@ static cscd_status ask_measure(cscd_detector *d, const cscd_view *positions,
     return status == CSCD_OK ? surface_measure_ask(d, positions, options, measure, out) : status;
 }
 
+cscd_status detector_curve_lengths(cscd_detector *d, const cscd_view *positions,
+                                   const cscd_intersection_options *options, cscd_measures *out) {
+    return ask_measure(d, positions, options, MEASURE_LENGTHS, out);
+}
+
 cscd_status cscd_detector_overlap_volumes(cscd_detector *detector, const cscd_view *positions,
                                           const cscd_intersection_options *options, cscd_measures *out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
@@ -35,5 +40,5 @@ cscd_status cscd_detector_curve_lengths(cscd_detector *detector, const cscd_view
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, ask_measure(detector, positions, options, MEASURE_LENGTHS, out));
+    return context_leave(&entry, detector_curve_lengths(detector, positions, options, out));
 }

@@ -1,7 +1,6 @@
 /* Steps that shorten intersection curves (P. Volino, N. Magnenat-Thalmann, Resolving Surface Collisions through Intersection Contour
  * Minimization, ACM Transactions on Graphics 25, 2006). They lead out where no side is wrong: a curve that begins at the border of one
  * sheet and ends at that of the other divides neither. */
-#include "runtime/detector/surface_answers.h"
 #include "runtime/untangle/untangle.h"
 #include "src/core/vec3.h"
 
@@ -48,7 +47,7 @@ static double step_share(const untangle_work *w, double sum, double shortens, do
 cscd_status shorten_curves(untangle_work *w, double spread, double farthest, double *x) {
     cscd_measures lengths;
     double shortens;
-    cscd_status status = surface_measure_ask(w->detector, WORK_VIEW(w, x), NULL, MEASURE_LENGTHS, &lengths);
+    cscd_status status = detector_curve_lengths(w->detector, WORK_VIEW(w, x), NULL, &lengths);
     if (status != CSCD_OK || lengths.gradient_count == 0) return status;
     status = find_direction(w, &lengths, spread, &shortens);
     if (status != CSCD_OK) return status;

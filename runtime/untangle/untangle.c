@@ -169,7 +169,7 @@ static cscd_status offer_positions(untangle_work *w, best_result *best, const do
 static const double good_displacement = 1.1;
 
 /* Lenses that are thinner than this, in edge lengths, say nothing of how far vertices must move. */
-static const double thin_lens = 0.2;
+static const double thin_lens = 1.0;
 
 static bool is_good(const untangle_work *w, const best_result *best) {
     const double thickness = max_of(w->found.thickness, thin_lens * w->graph.edge_length);

@@ -72,15 +72,14 @@ static inline void float_environment_set(float_environment e) {
 #define FLOAT_FLAGS   ((uint64_t)0xffffffff << 32)
 
 static inline float_environment float_environment_get(void) {
-    fexceptflag_t flags;
-    fegetexceptflag(&flags, FE_ALL_EXCEPT);
-    return (float_environment){(uint64_t)flags << 32 | (uint32_t)fegetround()};
+    return (float_environment){(uint64_t)(uint32_t)fetestexcept(FE_ALL_EXCEPT) << 32 |
+                               (uint32_t)fegetround()};
 }
 
 static inline void float_environment_set(float_environment e) {
-    const fexceptflag_t flags = (fexceptflag_t)(e.bits >> 32);
     fesetround((int)(uint32_t)e.bits);
-    fesetexceptflag(&flags, FE_ALL_EXCEPT);
+    feclearexcept(FE_ALL_EXCEPT);
+    if (e.bits >> 32 != 0) feraiseexcept((int)(e.bits >> 32));
 }
 
 #endif
