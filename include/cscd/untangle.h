@@ -73,7 +73,7 @@ typedef struct cscd_untangled {
 } cscd_untangled;
 
 /* Finds positions near the given ones at which nothing intersects, and writes them to `reached`, which may be
- * the same. Two stages: clean positions are found (cscd_untangle_start), and a descent by certified steps
+ * the same, or NULL. Two stages: clean positions are found (cscd_untangle_start), and a descent by certified steps
  * leads from them as near to the given ones as surfaces allow, so that displacements are smooth.
  *
  * The result is never worse: it is the input, bit for bit, or has strictly fewer intersecting pairs in the

@@ -164,6 +164,18 @@ static void make_motion_safe(caller_state *s) {
               "cscd_detector_make_safe");
 }
 
+static void untangle_start(caller_state *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
+    cscd_untangled found;
+    OPTIONS(cscd_untangle_options, cscd_untangle_defaults_sized, options);
+    expect_that(options.value.max_rounds == 60, "cscd_untangle_options", "the default of max_rounds");
+    REFUSE(cscd_untangle_options, options.value,
+           cscd_detector_untangle(s->detector, x0, &options.value, NULL, &found),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_detector_untangle(s->detector, x0, &options.value, NULL, &found),
+              "cscd_detector_untangle");
+}
+
 static void sum_energies(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
     cscd_energy *energy = NULL;
@@ -214,6 +226,7 @@ int main(void) {
     create_plan_from_parts(&s);
     create_detector(&s);
     ask_detector(&s);
+    untangle_start(&s);
     make_motion_safe(&s);
     sum_energies(&s);
     track_events(&s);
