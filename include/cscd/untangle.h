@@ -77,14 +77,17 @@ typedef struct cscd_untangled {
  * leads from them as near to the given ones as surfaces allow, so that displacements are smooth.
  *
  * The result is never worse: it is the input, bit for bit, or has strictly fewer intersecting pairs in the
- * positions as stored. `clean` is decided by the exact check. From clean positions in `start` the result is
- * always clean. Where no start is found, the result is the best that was met, and what is left can be asked of
- * cscd_detector_find_intersections. Pinned vertices do not change by a bit, and vertices of a seam that are at
- * one place stay at one place. min_separation, rules and pairs to leave out are those of the detector. The
- * result is the same for any number of threads, unless max_seconds ends the call.
+ * positions as stored, or as many of these and fewer that are too near. `clean` is decided by the exact check.
+ * From clean positions in `start` in which pinned vertices are where they are now, and which are clean as they
+ * would be stored, the result is always clean. Where no start is found, the result is the best that was met, and
+ * what is left can be asked of cscd_detector_find_intersections. Pinned vertices do not change by a bit, and
+ * vertices of a seam that are at one place, in `start` too, stay at one place. min_separation, rules and pairs
+ * to leave out are those of the detector. The result is the same for any number of threads, unless max_seconds
+ * ends the call.
  *
  * Where the host cancels, the result is the best so far, and `stopped` says so; the status is CSCD_OK, and
- * cscd_context_detail says who did.
+ * cscd_context_detail says who did. CANCELLED: the host did so before the pairs at the given positions were
+ * counted; nothing is written then.
  * INVALID_ARGUMENT also for the methods PUBLISHED and ICCD_PUBLISHED, where `start` is not clean, and for
  * doubles in `positions` with floats in `reached`. LIST_TOO_LONG: there are more pairs than fit memory. An
  * example, in which whatever crosses at x1 parts:

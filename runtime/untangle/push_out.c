@@ -264,8 +264,12 @@ static cscd_status push_in_rounds(push_work *p) {
 
 cscd_status push_out(untangle_work *w, const push_rules *rules, double *x, size_t *left) {
     const size_t size = 3 * (size_t)w->mesh->vertex_count * sizeof *x;
-    push_work p = {
-        .w = w, .rules = rules, .x = x, .fewest = SIZE_MAX, .fewest_points = SIZE_MAX, .lenses = {.w = w}};
+    push_work p = {.w = w,
+                   .rules = rules,
+                   .x = x,
+                   .fewest = SIZE_MAX,
+                   .fewest_points = SIZE_MAX,
+                   .lenses = {.w = w, .set = {.context = w->context}}};
     cscd_status status = CSCD_OUT_OF_MEMORY;
     if (context_allocate_all(w->context, list_arrays(&p)) && vertex_region_make(&p.relaxed, &w->graph) &&
         lens_finder_make(&p.lenses, w)) {

@@ -71,7 +71,7 @@ static const double least_magnitude = 0x1p-290;
 void work_flush(const untangle_work *w, double *x) {
     const size_t n = 3 * (size_t)w->mesh->vertex_count;
     for (size_t i = 0; i < n; i++) {
-        if (fabs(x[i]) < least_magnitude) x[i] = 0.0;
+        if (fabs(x[i]) < least_magnitude && !w->graph.fixed[i / 3]) x[i] = 0.0;
     }
 }
 
@@ -127,6 +127,23 @@ static double greatest_displacement(const untangle_work *w, const double *x, con
     return sqrt(squared);
 }
 
+/* Where a seam joins floats and doubles, what is at one place stays there: as floats. */
+static void round_seams(const untangle_work *w, const best_result *best, const double *x) {
+    const uint32_t *names = w->graph.names;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
+            const size_t at = 3 * (size_t)v, name = 3 * (size_t)names[v];
+            if (names[v] == v || w->graph.fixed[v]) continue;
+            const bool is_float = best->scalars[cscd_mesh_vertex_object(w->mesh, v)] == CSCD_SCALAR_FLOAT;
+            if (memcmp(x + at, x + name, sizeof(double[3])) != 0 || (pass == 0 && !is_float)) continue;
+            if (pass == 0)
+                memcpy(best->stored + name, best->stored + at, sizeof(double[3]));
+            else
+                memcpy(best->stored + at, best->stored + name, sizeof(double[3]));
+        }
+    }
+}
+
 /* Rounds positions as they will be stored. Vertices that are fixed are the input, bit for bit. */
 static void round_positions(const untangle_work *w, const best_result *best, const double *x) {
     for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
@@ -137,12 +154,18 @@ static void round_positions(const untangle_work *w, const best_result *best, con
             best->stored[k] = kept ? x[k] : stored_coordinate(x[k], scalar);
         }
     }
+    if (best->scalars != NULL) round_seams(w, best, x);
+    for (size_t k = 0; k < 3 * (size_t)w->mesh->vertex_count; k++) {
+        if (best->stored[k] == w->input[k]) best->stored[k] = w->input[k]; /* with the sign of 0 */
+    }
 }
 
-/* Has every vertex that is fixed come to where it is in the input? */
+/* Has every vertex that is fixed come to where it is in the input, but for signs of 0? */
 static bool fixed_arrived(const untangle_work *w, const double *x) {
     for (size_t v = 0; v < w->mesh->vertex_count; v++) {
-        if (w->graph.fixed[v] && memcmp(x + 3 * v, w->input + 3 * v, sizeof(double[3])) != 0) return false;
+        for (size_t k = 3 * v; k < 3 * v + 3; k++) {
+            if (w->graph.fixed[v] && x[k] != w->input[k]) return false;
+        }
     }
     return true;
 }
@@ -254,7 +277,10 @@ static cscd_status try_given(untangle_work *w, best_result *best, double *x, dou
             "start is not clean: %zu pairs of triangles intersect, and %zu pairs of features are too near",
             count.pairs, count.near);
     if (carried) status = follow_start(w, x, scratch);
-    return status == CSCD_OK ? refine_start(w, best, x, !carried, CSCD_UNTANGLE_GIVEN) : status;
+    if (status == CSCD_OK) status = refine_start(w, best, x, !carried, CSCD_UNTANGLE_GIVEN);
+    if (status != CSCD_OK || is_clean(best->count)) return status;
+    status = read_start(w, x, scratch, &carried); /* rounding may cost a result what the start has */
+    return status == CSCD_OK ? offer_positions(w, best, x, CSCD_UNTANGLE_GIVEN, true) : status;
 }
 
 static cscd_status try_shrinking(untangle_work *w, best_result *best, double *x) {
@@ -326,8 +352,8 @@ static bool any_moves(const untangle_work *w) {
 }
 
 static cscd_status search_result(untangle_work *w, best_result *best, double *x, double *scratch) {
-    cscd_status status = look_at_input(w, best);
-    if (status != CSCD_OK || is_clean(best->count) || !any_moves(w)) return status;
+    cscd_status status;
+    if (is_clean(best->count) || !any_moves(w)) return CSCD_OK;
     if (w->options.start != NULL) {
         status = try_given(w, best, x, scratch);
         if (status != CSCD_OK || is_clean(best->count)) return status;
@@ -383,6 +409,7 @@ static cscd_status run_work(untangle_work *w, best_result *best, double *x, doub
         w->inverse_masses[v] = w->graph.fixed[v] ? 0.0 : 1.0;
     if (status == CSCD_OK && !vertex_region_make(&w->region, &w->graph)) status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = energy_create(w->context, w->mesh, &w->energy);
+    if (status == CSCD_OK) status = look_at_input(w, best);
     if (status == CSCD_OK) status = work_settle(w, search_result(w, best, x, scratch));
     if (status == CSCD_OK) sum_up(w, best);
     return status;

@@ -41,7 +41,8 @@ bool work_goes_on(untangle_work *w);
 /* A call that was cancelled ends the search for something better, and is no failure. */
 cscd_status work_settle(untangle_work *w, cscd_status status);
 
-/* Coordinates that the exact predicates do not take, because they are too near to 0, become 0. */
+/* Coordinates that the exact predicates do not take, because they are too near to 0, become 0, but for those of fixed
+ * vertices. */
 void work_flush(const untangle_work *w, double *x);
 
 /* Is it clean? *pairs: how many intersect; *near: how many others are nearer than they have to keep. */
