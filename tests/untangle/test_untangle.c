@@ -190,6 +190,48 @@ TEST(floats_are_clean_as_stored) {
     close_rig(r);
 }
 
+/* The pole of a sphere is pushed in so far that it comes out on the other side: there the body winds -1 times around it. */
+TEST(folds_open) {
+    tangle_rig *r = calloc(1, sizeof *r);
+    scene_clear(&r->shape);
+    scene_add_sphere(&r->shape, (const double[]){0.0, 0.0, 0.0}, 1.0, 16, 20);
+    for (uint32_t v = 0; v < r->shape.vertex_count; v++) {
+        double *x = r->shape.x0 + 3 * (size_t)v;
+        if (x[2] > 0.6) x[2] -= 6.5 * (x[2] - 0.6);
+    }
+    open_with(r, NULL, NULL);
+    expect_ok(untangle_at(r, r->shape.x0));
+    expect_promises(r, r->shape.x0);
+    assert_true(r->found.pairs_before > 0 && r->found.clean);
+    close_rig(r);
+}
+
+/* A curve from the border of one strip to the border of the other divides neither. */
+TEST(crossed_strips_part) {
+    tangle_rig *r = calloc(1, sizeof *r);
+    scene_clear(&r->shape);
+    scene_add_sheet(&r->shape, 2.5, 2.0, 11, 9);
+    const uint32_t first = r->shape.vertex_count;
+    scene_add_sheet(&r->shape, 2.5, 2.0, 11, 9);
+    double middle[2][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    for (uint32_t v = 0; v < r->shape.vertex_count; v++) {
+        for (size_t k = 0; k < 3; k++) middle[v >= first][k] += r->shape.x0[3 * (size_t)v + k] / first;
+    }
+    for (uint32_t v = 0; v < r->shape.vertex_count; v++) {
+        double *x = r->shape.x0 + 3 * (size_t)v, from[3];
+        for (size_t k = 0; k < 3; k++) from[k] = x[k] - middle[v >= first][k];
+        x[0] = from[0] + (v < first ? -0.75 : 0.77);
+        x[1] = v < first ? from[1] : from[2] + 0.013;
+        x[2] = v < first ? from[2] : from[1] + 0.017;
+    }
+    open_with(r, NULL, NULL);
+    expect_ok(untangle_at(r, r->shape.x0));
+    expect_promises(r, r->shape.x0);
+    assert_true(r->found.pairs_before > 0 && r->found.clean);
+    assert_true(r->found.start == CSCD_UNTANGLE_PUSHED); /* shrinking would part them, too */
+    close_rig(r);
+}
+
 /* ---- the host ------------------------------------------------------------------------------------------ */
 
 typedef struct stage_log {
