@@ -26,6 +26,9 @@ static inline uint32_t entry_number(patch_entry e) {
     return (uint32_t)e.key;
 }
 
+/* The lists of entries: wrong vertices by patch, curves by patch, patches by patch. */
+enum { OF_VERTICES, OF_CURVES, OF_PARTNERS, LISTS };
+
 /* What is found at one moment; begins with the work, and nothing else set. */
 typedef struct lens_finder {
     untangle_work *w;
@@ -42,8 +45,8 @@ typedef struct lens_finder {
     uint32_t stamp;
     uint32_t next_patch;
     triangle_set set;
-    patch_entry *entries[3]; /* wrong vertices, curves and partners of patches, sorted */
-    size_t entry_counts[3], entry_capacities[3];
+    patch_entry *entries[LISTS]; /* wrong vertices, curves and partners of patches, sorted */
+    size_t entry_counts[LISTS], entry_capacities[LISTS];
     uint32_t *triangles;
     size_t triangle_count, triangle_capacity;
     lens_point *points;
@@ -66,14 +69,43 @@ typedef struct lens_rules {
 cscd_status lenses_find(lens_finder *f, const cscd_intersections *found, const double *x,
                         const lens_rules *rules);
 
+/* ---- steps ------------------------------------------------------------------------------------------------ */
+
+/* Halves the wrong patches that both traces of a curve bound, as those of skin that is folded through itself: patches at the first
+ * trace, and new ones at the second. */
+void lens_folds_halve(lens_finder *f, const cscd_curves *curves);
+
+/* Lists for each wrong patch its vertices, and its curves, twice the number plus the sheet. False: no memory. */
+bool lens_patches_list(lens_finder *f, const cscd_curves *curves);
+
+/* Chooses the triangles in which the points of a patch look for their places: along its curves, those of the other sheets, and the
+ * wrong patches there; but none with a corner in the patch. False: no memory. */
+bool lens_triangles_choose(lens_finder *f, const cscd_curves *curves, uint32_t patch, uint32_t rings);
+
+/* Adds the points of a patch, whose vertices are entries from `first` on before `end`. False: no memory. */
+bool lens_points_add(lens_finder *f, const cscd_curves *curves, const double *x, const lens_rules *rules,
+                     size_t first, size_t end);
+
+/* Adds the points of edges that pass through another sheet and back. False: no memory. */
+bool lens_edges_add(lens_finder *f, const cscd_curves *curves, const double *x);
+
 /* Adds the points of pairs that no curve leads through. False: no memory. */
 bool flush_pairs_add(lens_finder *f, const cscd_intersections *found, const double *x);
 
-/* Adds a point; false: no memory. */
-bool lens_finder_add_point(lens_finder *f, const lens_point *point);
+/* ---- what they share --------------------------------------------------------------------------------------- */
+
+/* The triangle of a piece on one of the two sheets. */
+static inline uint32_t curve_piece_triangle(const cscd_curves *curves, size_t piece, int sheet) {
+    return sheet == 0 ? curves->pieces[piece].a : curves->pieces[piece].b;
+}
 
 /* The unit normal of a triangle; 0 if it has no area. */
 void lens_normal(const lens_finder *f, const double *x, uint32_t triangle, double out[3]);
+
+/* Writes the place, and the way there from a point at `from`. The way out of a closed component leads along its normals, and from
+ * where it is inside out against them; side is that of the point. */
+void lens_take_place(const lens_finder *f, const double *x, const double *from, const set_place *place,
+                     int side, lens_point *out);
 
 /* ---- lists of a finder --------------------------------------------------------------------------------- */
 
@@ -83,5 +115,16 @@ bool lens_finder_add(lens_finder *f, int list, uint32_t patch, uint32_t number);
 /* Sorts a list. False: no memory. */
 bool lens_finder_sort(lens_finder *f, int list);
 
+/* Keeps one of entries in a sorted list that are the same. */
+void lens_finder_unify(lens_finder *f, int list);
+
 /* The first entry of a patch in a sorted list. */
 size_t lens_finder_first(const lens_finder *f, int list, uint32_t patch);
+
+/* Adds a point; false: no memory. */
+bool lens_finder_add_point(lens_finder *f, const lens_point *point);
+
+/* Lists triangles, each once: begins, adds one, and adds those around all that are there. False: no memory. */
+void lens_triangles_begin(lens_finder *f);
+bool lens_triangles_add(lens_finder *f, uint32_t triangle);
+bool lens_triangles_widen(lens_finder *f, uint32_t rings);
