@@ -52,6 +52,8 @@ typedef enum cscd_enumeration {
     /* cscd_left_out: "pairs", "curves", "patches", "overlaps", "cut-offs", "depths", "parts" */
     CSCD_LEFT_OUTS,
     CSCD_CURVE_ENDS, /* cscd_curve_end: "none", "vertex", "border", "junction", "left out" */
+    /* cscd_lens_reason: "buried", "inside out", "looks out", "smaller side", "edge", "flush" */
+    CSCD_LENS_REASONS,
     CSCD_ENUMERATION_MAX_ENUM = 0x7fffffff
 } cscd_enumeration;
 

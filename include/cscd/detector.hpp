@@ -255,6 +255,11 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         return found;
     }
 
+    lenses find_lenses(const positions &x,
+                       const cscd_intersection_options &options = cscd_intersection_defaults()) {
+        const cscd_view *at = covering(x);
+        return find<lenses>([&](lenses *out) { return cscd_detector_find_lenses(get(), at, &options, out); });
+    }
     /* reached may be x. */
     cscd_untangled untangle(const positions &x, const mutable_positions &reached,
                             const cscd_untangle_options &options = cscd_untangle_defaults()) {

@@ -5,6 +5,7 @@
 #include <cscd/context.hpp>
 #include <cscd/solver.h>
 #include <cscd/surface.h>
+#include <cscd/untangle.h>
 #include <cscd/view.hpp>
 
 #include <algorithm>
@@ -51,6 +52,7 @@ using proximities = list<cscd_proximities>;
 using contact_part_pairs = list<cscd_contact_part_pairs>;
 using measures = list<cscd_measures>;
 using candidates = list<cscd_candidates>;
+using lenses = list<cscd_lenses>;
 
 /* The gradient of one value, by ascending vertex; all of them. */
 inline span<const cscd_vertex_gradient> gradients(const cscd_measures &found,
@@ -59,6 +61,14 @@ inline span<const cscd_vertex_gradient> gradients(const cscd_measures &found,
 }
 inline span<const cscd_vertex_gradient> gradients(const cscd_measures &found) noexcept {
     return {found.gradients, found.gradient_count};
+}
+
+/* The points of one lens, and of all. */
+inline span<const cscd_lens_point> points(const cscd_lenses &found, const cscd_lens &of) noexcept {
+    return {found.points + of.first_point, of.point_count};
+}
+inline span<const cscd_lens_point> points(const cscd_lenses &found) noexcept {
+    return {found.points, found.point_count};
 }
 
 /* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */

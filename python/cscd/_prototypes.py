@@ -80,6 +80,7 @@ _CALLS: Dict[str, List[Any]] = {
     "detector_displacement_bounds": [_p, _p, _f64, _u32, _p, _size, _p],
     "detector_truncate": [_p, _p, _p, _f64, _p, _p],
     "detector_make_safe": [_p, _p, _p, _p, _p, _p],
+    "detector_find_lenses": [_p, _p, _p, _p],
     "detector_untangle": [_p, _p, _p, _p, _p],
     "detector_contact_parts": [_p, _p, _size, _p],
     "detector_set_rest": [_p, _p],

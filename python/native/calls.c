@@ -74,6 +74,10 @@ CALL_OF(detector_make_safe,
         (host * h, cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
          const cscd_response_options *options, const cscd_mutable_view *reached, cscd_safe_motion *out),
         cscd_detector_make_safe(detector, x0, x1, options, reached, out))
+CALL_OF(detector_find_lenses,
+        (host * h, cscd_detector *detector, const cscd_view *positions,
+         const cscd_intersection_options *options, cscd_lenses *out),
+        cscd_detector_find_lenses(detector, positions, options, out))
 CALL_OF(detector_untangle,
         (host * h, cscd_detector *detector, const cscd_view *positions, const cscd_untangle_options *options,
          const cscd_mutable_view *reached, cscd_untangled *out),

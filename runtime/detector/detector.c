@@ -160,6 +160,8 @@ void detector_free(cscd_detector *d) {
     result_buffer_free(context, &d->results.contact_parts);
     rest_shape_free(context, &d->config.rest);
     result_buffer_free(context, &d->results.candidates);
+    result_buffer_free(context, &d->results.lenses);
+    result_buffer_free(context, &d->results.lens_points);
     context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);
     context_free(context, d->unpacked[1]);

@@ -15,7 +15,7 @@ typedef struct detector_results {
     cscd_guarantee *guarantees; /* per component, of the last step */
     cscd_timings timings;
     cscd_counters counters;
-    result_buffer contacts, proximities, intersections, contact_parts, candidates;
+    result_buffer contacts, proximities, intersections, contact_parts, candidates, lenses, lens_points;
     near_list near;
     result_buffer repetitions;       /* of near pairs, while they are found */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
@@ -148,6 +148,10 @@ cscd_status detector_find_intersections(cscd_detector *d, const cscd_view *posit
                                         const cscd_intersection_options *options, cscd_intersections *out);
 cscd_status detector_curve_lengths(cscd_detector *d, const cscd_view *positions,
                                    const cscd_intersection_options *options, cscd_measures *out);
+
+/* Finds all pairs, curves and patches; of the options, which may be NULL, part_bodies, orientation and max_memory count. */
+cscd_status detector_find_patches(cscd_detector *d, const cscd_view *positions,
+                                  const cscd_intersection_options *options, cscd_intersections *out);
 
 /* ---- one interval -------------------------------------------------------------------------------------- */
 

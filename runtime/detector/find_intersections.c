@@ -443,23 +443,37 @@ cscd_status cscd_detector_find_intersections(cscd_detector *detector, const cscd
     return context_leave(&entry, detector_find_intersections(detector, positions, options, out));
 }
 
-/* ---- measures ------------------------------------------------------------------------------------------ */
+/* ---- what follows from curves -------------------------------------------------------------------------- */
 
-static cscd_status take_measure_options(cscd_context *context, const cscd_intersection_options *options,
-                                        surface_measure measure, cscd_intersection_options *out) {
+static cscd_status take_curve_options(cscd_context *context, const cscd_intersection_options *options,
+                                      bool patches, cscd_intersection_options *out) {
     cscd_intersection_options given;
     cscd_status status = take_options(context, options, &given);
     if (status != CSCD_OK) return status;
     if (given.answer != CSCD_ANSWER_LIST || (given.kinds & ALL_KINDS) != ALL_KINDS || given.stop_after != 0)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "volumes and lengths need all pairs: answer LIST, every kind, and stop_after 0");
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "volumes, lengths and lenses need all pairs: answer LIST, every kind, and stop_after 0");
     *out = default_options;
     out->curves = true;
-    out->patches = measure == MEASURE_VOLUMES;
+    out->patches = patches;
     out->part_bodies = given.part_bodies;
     out->orientation = given.orientation;
     out->max_memory = given.max_memory;
     return CSCD_OK;
+}
+
+static cscd_status ask_for_curves(cscd_detector *d, const cscd_view *positions,
+                                  const cscd_intersection_options *options, bool patches,
+                                  kind_question *question) {
+    cscd_status status = take_curve_options(d->context, options, patches, &question->options);
+    if (status == CSCD_OK) status = ask_of_views(d, positions, question);
+    if (status != CSCD_OK || question->out->left_out == 0) return status;
+    return context_fail(d->context, CSCD_LIST_TOO_LONG,
+                        "what %zu pairs of triangles make up does not fit max_memory, which is %zu bytes; "
+                        "%zu may be enough",
+                        question->out->count, most_memory(d, &question->options),
+                        question->out->wanted_memory);
 }
 
 cscd_status surface_measure_ask(cscd_detector *d, const cscd_view *positions,
@@ -467,15 +481,13 @@ cscd_status surface_measure_ask(cscd_detector *d, const cscd_view *positions,
                                 cscd_measures *out) {
     cscd_intersections found;
     kind_question question = {.out = &found, .measure = measure};
-    cscd_status status = take_measure_options(d->context, options, measure, &question.options);
-    if (status == CSCD_OK) status = ask_of_views(d, positions, &question);
-    if (status != CSCD_OK) return status;
-    if (found.left_out != 0)
-        return context_fail(
-            d->context, CSCD_LIST_TOO_LONG,
-            "what %zu pairs of triangles make up does not fit max_memory, which is %zu bytes; "
-            "%zu may be enough",
-            found.count, most_memory(d, &question.options), found.wanted_memory);
-    *out = d->results.answers->measures;
-    return CSCD_OK;
+    cscd_status status = ask_for_curves(d, positions, options, measure == MEASURE_VOLUMES, &question);
+    if (status == CSCD_OK) *out = d->results.answers->measures;
+    return status;
+}
+
+cscd_status detector_find_patches(cscd_detector *d, const cscd_view *positions,
+                                  const cscd_intersection_options *options, cscd_intersections *out) {
+    kind_question question = {.out = out, .measure = MEASURE_NOTHING};
+    return ask_for_curves(d, positions, options, true, &question);
 }

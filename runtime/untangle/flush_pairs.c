@@ -51,7 +51,12 @@ static bool add_corners(lens_finder *f, const double *x, const parting *way) {
                                    x + 3 * (size_t)corners[2], &u, &w);
         if (squared > near * near) continue;
         lens_point point = {.vertices = {v, v, corners[0], corners[1], corners[2]},
-                            .weights = {1.0, 0.0, u + w - 1.0, -u, -w}};
+                            .weights = {1.0, 0.0, u + w - 1.0, -u, -w},
+                            .along_normal = true,
+                            .reason = CSCD_LENS_FLUSH,
+                            .group = UINT32_MAX,
+                            .edge = UINT32_MAX,
+                            .triangle = way->second};
         for (int i = 0; i < 3; i++) point.direction[i] = way->sign * normal[i];
         if (!lens_finder_add_point(f, &point)) return false;
     }

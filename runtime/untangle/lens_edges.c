@@ -13,9 +13,23 @@ static int side_behind(const lens_finder *f, const double *x, const cscd_curve_p
     return vec3_dot(along, normal) < 0.0 ? 1 : -1;
 }
 
+/* The curve of one of the points. */
+static uint32_t curve_of_point(const cscd_curves *curves, const cscd_curve_point *point) {
+    const size_t place = (size_t)(point - curves->points);
+    size_t low = 0, high = curves->count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (curves->items[middle].first_point <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (uint32_t)low;
+}
+
 /* A piece of an edge between two curve points. */
-static bool add_point_of_edge(lens_finder *f, const double *x, const cscd_curve_point *a,
-                              const cscd_curve_point *b) {
+static bool add_point_of_edge(lens_finder *f, const cscd_curves *curves, const double *x,
+                              const cscd_curve_point *a, const cscd_curve_point *b) {
     const uint32_t *ends = f->w->mesh->edges[a->edge];
     const double s = 0.5 * (a->s + b->s);
     const int side = side_behind(f, x, a);
@@ -36,9 +50,14 @@ static bool add_point_of_edge(lens_finder *f, const double *x, const cscd_curve_
     if (kept == 0) return true;
     if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)kept, 1)) return false;
     const set_place place = triangle_set_nearest(&f->set, from);
-    lens_point point = {.vertices = {ends[0], ends[1]}, .weights = {1.0 - s, s}};
+    lens_point point = {.vertices = {ends[0], ends[1]},
+                        .weights = {1.0 - s, s},
+                        .reason = CSCD_LENS_EDGE,
+                        .group = curve_of_point(curves, a),
+                        .edge = a->edge};
     lens_take_place(f, x, from, &place, side, &point);
-    return lens_finder_add_point(f, &point);
+    return lens_finder_add_point(f, &point) && lens_finder_add(f, DECIDED, point.group, 0) &&
+           lens_finder_add(f, DECIDED, curve_of_point(curves, b), 0);
 }
 
 static int compare_on_edge(const void *a, const void *b) {
@@ -62,7 +81,7 @@ bool lens_edges_add(lens_finder *f, const cscd_curves *curves, const double *x) 
         if (i == 0 || points[i]->edge != points[i - 1]->edge) {
             wrong = f->wrong[f->w->mesh->edges[points[i]->edge][0]];
         } else if (wrong) {
-            room = add_point_of_edge(f, x, points[i - 1], points[i]);
+            room = add_point_of_edge(f, curves, x, points[i - 1], points[i]);
         }
         wrong = !wrong;
     }

@@ -44,8 +44,9 @@ static void halve_patch(lens_finder *f, const cscd_curves *curves, const cscd_cu
     }
     if (all < 4 || half == 0 || half == all) return;
     for (uint32_t v = 0; v < n; v++) {
-        if (f->patches[v] == patch && f->wrong[v] && from_second[v] < from_first[v])
-            f->patches[v] = f->next_patch;
+        if (f->patches[v] != patch || !f->wrong[v]) continue;
+        f->folded[v] = true;
+        if (from_second[v] < from_first[v]) f->patches[v] = f->next_patch;
     }
     f->next_patch++;
 }
@@ -72,6 +73,7 @@ static uint32_t folded_patch(const lens_finder *f, const cscd_curves *curves, co
 }
 
 void lens_folds_halve(lens_finder *f, const cscd_curves *curves) {
+    memset(f->folded, 0, f->w->mesh->vertex_count * sizeof *f->folded);
     for (size_t i = 0; i < curves->count; i++) {
         const cscd_curve *c = &curves->items[i];
         if (c->components[0] != c->components[1]) continue;

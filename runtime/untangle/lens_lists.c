@@ -6,8 +6,8 @@
 static array_list list_arrays(lens_finder *f) {
     const cscd_mesh *mesh = f->w->mesh;
     const size_t n = mesh->vertex_count, t = mesh->triangle_count;
-    return (array_list){{ARRAY(f->patches, n), ARRAY(f->wrong, n), ARRAY(f->sides, n),
-                         ARRAY(f->crossings, mesh->edge_count), ARRAY(f->stamps, t),
+    return (array_list){{ARRAY(f->patches, n), ARRAY(f->wrong, n), ARRAY(f->reasons, n), ARRAY(f->folded, n),
+                         ARRAY(f->sides, n), ARRAY(f->crossings, mesh->edge_count), ARRAY(f->stamps, t),
                          ARRAY(f->queue, n > t ? n : t), ARRAY(f->areas, n), ARRAY(f->colours, n),
                          ARRAY(f->distances, 2 * n)}};
 }

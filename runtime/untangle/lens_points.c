@@ -12,6 +12,9 @@ static const double near_place = 1e-3;
 /* The way out of a closed component has at least this share along the normal. */
 static const double least_slope = 0.1;
 
+/* The vector area of a patch is at least this share of its area, if it means something. */
+static const double least_vector_area = 0.05;
+
 void lens_normal(const lens_finder *f, const double *x, uint32_t triangle, double out[3]) {
     const uint32_t *corners = f->w->mesh->triangles[triangle];
     double u[3], v[3];
@@ -43,23 +46,23 @@ void lens_take_place(const lens_finder *f, const double *x, const double *from, 
     const bool far = length > near_place * f->w->graph.edge_length;
     for (int k = 0; k < 3; k++) out->direction[k] = far ? way[k] / length : normal[k];
     out->thickness = length;
+    out->along_normal = !far;
+    out->triangle = place->triangle;
     if (side == 0 || !triangle_is_closed(f, place->triangle)) return;
     if (side * vec3_dot(out->direction, normal) < least_slope) {
         for (int k = 0; k < 3; k++) out->direction[k] = side * normal[k];
         out->thickness = 0.0;
+        out->along_normal = true;
     }
 }
 
-/* The axis of a patch: its vector area, which depends on its border alone, if it is large enough to mean something; towards the
- * other sheet, or for buried patches of closed components into the component. */
-static bool patch_axis(const lens_finder *f, const double *x, size_t first, size_t end, double out[3]) {
+bool lens_vector_area(const lens_finder *f, const double *x, uint32_t patch, bool *closed, double out[3]) {
     const cscd_mesh *mesh = f->w->mesh;
-    const uint32_t patch = entry_patch(f->entries[OF_VERTICES][first]);
-    double sum[3] = {0.0, 0.0, 0.0}, area = 0.0, own[3] = {0.0, 0.0, 0.0}, others[3] = {0.0, 0.0, 0.0};
-    bool closed = false;
-    for (size_t i = first; i < end; i++) {
+    double sum[3] = {0.0, 0.0, 0.0}, area = 0.0;
+    *closed = false;
+    for (size_t i = lens_finder_first(f, OF_VERTICES, patch);
+         i < f->entry_counts[OF_VERTICES] && entry_patch(f->entries[OF_VERTICES][i]) == patch; i++) {
         const uint32_t v = entry_number(f->entries[OF_VERTICES][i]);
-        vec3_add_scaled(own, 1.0 / (double)(end - first), x + 3 * (size_t)v, own);
         for (uint32_t s = mesh->vertex_star_offsets[v]; s < mesh->vertex_star_offsets[v + 1]; s++) {
             const uint32_t t = mesh->vertex_stars[s], *corners = mesh->triangles[t];
             const bool whole = f->patches[corners[0]] == patch && f->patches[corners[1]] == patch &&
@@ -71,22 +74,34 @@ static bool patch_axis(const lens_finder *f, const double *x, size_t first, size
             vec3_cross(u, w, across);
             vec3_add_scaled(sum, 0.5, across, sum);
             area += 0.5 * sqrt(vec3_dot(across, across));
-            closed = triangle_is_closed(f, t);
+            *closed = triangle_is_closed(f, t);
         }
     }
     const double length = sqrt(vec3_dot(sum, sum));
-    if (!(length > 0.05 * area)) return false;
-    double towards = -1.0;
+    if (!(length > least_vector_area * area)) return false;
+    for (int k = 0; k < 3; k++) out[k] = sum[k] / length;
+    return true;
+}
+
+/* The axis of a patch, if it has one: towards the other sheet, or for buried patches of closed components into the component. */
+static bool patch_axis(const lens_finder *f, const double *x, size_t first, size_t end, double out[3]) {
+    const cscd_mesh *mesh = f->w->mesh;
+    double own[3] = {0.0, 0.0, 0.0}, others[3] = {0.0, 0.0, 0.0}, towards = -1.0;
+    bool closed;
+    if (!lens_vector_area(f, x, entry_patch(f->entries[OF_VERTICES][first]), &closed, out)) return false;
     if (!closed || f->set.count == 0 || !triangle_is_closed(f, f->set.items[0])) {
+        for (size_t i = first; i < end; i++)
+            vec3_add_scaled(own, 1.0 / (double)(end - first),
+                            x + 3 * (size_t)entry_number(f->entries[OF_VERTICES][i]), own);
         for (uint32_t i = 0; i < f->set.count; i++) {
             const uint32_t *corners = mesh->triangles[f->set.items[i]];
             for (int k = 0; k < 3; k++)
                 vec3_add_scaled(others, 1.0 / (3.0 * f->set.count), x + 3 * (size_t)corners[k], others);
         }
         vec3_subtract(others, own, others);
-        towards = vec3_dot(others, sum) >= 0.0 ? 1.0 : -1.0;
+        towards = vec3_dot(others, out) >= 0.0 ? 1.0 : -1.0;
     }
-    for (int k = 0; k < 3; k++) out[k] = towards * sum[k] / length;
+    for (int k = 0; k < 3; k++) out[k] *= towards;
     return true;
 }
 
@@ -112,6 +127,15 @@ static bool has_vertex(const lens_finder *f, const lens_point *point, uint32_t v
     return false;
 }
 
+/* The curves of a patch with points. */
+static bool decide_curves(lens_finder *f, uint32_t patch) {
+    for (size_t i = lens_finder_first(f, OF_CURVES, patch);
+         i < f->entry_counts[OF_CURVES] && entry_patch(f->entries[OF_CURVES][i]) == patch; i++) {
+        if (!lens_finder_add(f, DECIDED, entry_number(f->entries[OF_CURVES][i]) / 2, 0)) return false;
+    }
+    return true;
+}
+
 bool lens_points_add(lens_finder *f, const cscd_curves *curves, const double *x, const lens_rules *rules,
                      size_t first, size_t end) {
     double axis[3];
@@ -121,15 +145,20 @@ bool lens_points_add(lens_finder *f, const cscd_curves *curves, const double *x,
     if (!triangle_set_make(&f->set, f->w->mesh, x, f->triangles, (uint32_t)f->triangle_count, end - first))
         return false;
     const bool along = rules->along_axis && patch_axis(f, x, first, end, axis);
+    const size_t before = f->point_count;
     for (size_t i = first; i < end; i++) {
         const uint32_t v = entry_number(f->entries[OF_VERTICES][i]);
         const double *from = x + 3 * (size_t)v;
         const set_place place = triangle_set_nearest(&f->set, from);
-        lens_point point = {.vertices = {v, v}, .weights = {1.0, 0.0}};
+        lens_point point = {.vertices = {v, v},
+                            .weights = {1.0, 0.0},
+                            .reason = (cscd_lens_reason)f->reasons[v],
+                            .group = patch,
+                            .edge = UINT32_MAX};
         lens_take_place(f, x, from, &place, f->sides[v], &point);
         if (along) follow_axis(f, x, from, axis, &point);
         if (has_vertex(f, &point, v)) continue;
         if (!lens_finder_add_point(f, &point)) return false;
     }
-    return true;
+    return f->point_count == before || decide_curves(f, patch);
 }

@@ -20,6 +20,9 @@ cscd_status lenses_find(lens_finder *f, const cscd_intersections *found, const d
         if (!lens_points_add(f, found->curves, x, rules, i, end)) return CSCD_OUT_OF_MEMORY;
     }
     if (!lens_edges_add(f, found->curves, x) || !flush_pairs_add(f, found, x)) return CSCD_OUT_OF_MEMORY;
+    if (!lens_finder_sort(f, DECIDED)) return CSCD_OUT_OF_MEMORY;
+    lens_finder_unify(f, DECIDED);
+    f->undecided = found->curves->count - f->entry_counts[DECIDED];
     for (size_t i = 0; i < f->point_count; i++) f->thickness = max_of(f->thickness, f->points[i].thickness);
     return CSCD_OK;
 }

@@ -11,6 +11,11 @@ typedef struct lens_point {
         [5]; /* the vector from the place to the point is their sum: the first two add up to 1, the others to -1 */
     double direction[3]; /* a unit vector, in which the point goes */
     double thickness;    /* how far */
+    bool along_normal;   /* the direction is a normal, and no way to the place */
+    cscd_lens_reason reason;
+    uint32_t group; /* its patch; of an edge its curve; UINT32_MAX for pairs that no curve leads through */
+    uint32_t edge;  /* UINT32_MAX: of a vertex */
+    uint32_t triangle;
 } lens_point;
 
 /* A number of a patch: of a vertex, a curve or another patch. Sorted by patch, then by number. */
@@ -26,8 +31,8 @@ static inline uint32_t entry_number(patch_entry e) {
     return (uint32_t)e.key;
 }
 
-/* The lists of entries: wrong vertices by patch, curves by patch, patches by patch. */
-enum { OF_VERTICES, OF_CURVES, OF_PARTNERS, LISTS };
+/* The lists of entries: wrong vertices by patch, curves by patch, patches by patch; curves that bound points. */
+enum { OF_VERTICES, OF_CURVES, OF_PARTNERS, DECIDED, LISTS };
 
 /* What is found at one moment; begins with the work, and nothing else set. */
 typedef struct lens_finder {
@@ -35,7 +40,9 @@ typedef struct lens_finder {
     uint32_t *
         patches; /* per vertex: connected by edges that no curve crosses; the number is a vertex's at first */
     bool *wrong; /* per vertex */
-    int8_t *sides; /* per vertex: 1 in a body, -1 where a body winds around it less than 0 times, else 0 */
+    uint8_t *reasons; /* per vertex that is wrong: a cscd_lens_reason */
+    bool *folded;     /* per vertex: its patch is half of one */
+    int8_t *sides;    /* per vertex: 1 in a body, -1 where a body winds around it less than 0 times, else 0 */
     uint32_t *crossings; /* per edge: how many curve points it has */
     uint32_t *stamps;    /* per triangle */
     uint32_t *queue;     /* per vertex or triangle */
@@ -53,6 +60,7 @@ typedef struct lens_finder {
     size_t point_count, point_capacity;
     double thickness; /* of the thickest */
     size_t wrong_count;
+    size_t undecided; /* curves that bound no point */
 } lens_finder;
 
 bool lens_finder_make(lens_finder *f, untangle_work *w);
@@ -98,6 +106,10 @@ bool flush_pairs_add(lens_finder *f, const cscd_intersections *found, const doub
 static inline uint32_t curve_piece_triangle(const cscd_curves *curves, size_t piece, int sheet) {
     return sheet == 0 ? curves->pieces[piece].a : curves->pieces[piece].b;
 }
+
+/* The vector area of a patch, which depends on its border alone, as a unit vector, if it is large enough to mean something.
+ * *closed: its last triangle is of a closed component. */
+bool lens_vector_area(const lens_finder *f, const double *x, uint32_t patch, bool *closed, double out[3]);
 
 /* The unit normal of a triangle; 0 if it has no area. */
 void lens_normal(const lens_finder *f, const double *x, uint32_t triangle, double out[3]);

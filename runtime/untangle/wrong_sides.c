@@ -149,6 +149,9 @@ static void take_colours(lens_finder *f) {
     for (uint32_t v = 0; v < f->w->mesh->vertex_count; v++) {
         const uint32_t colour = f->colours[f->patches[v]];
         f->wrong[v] = colour != NO_COLOUR && (f->wrong[v] || colour == 1);
+        f->reasons[v] = f->sides[v] > 0   ? CSCD_LENS_BURIED
+                        : f->sides[v] < 0 ? CSCD_LENS_INSIDE_OUT
+                                          : CSCD_LENS_SMALLER;
     }
 }
 
@@ -175,6 +178,7 @@ static void look_out(lens_finder *f) {
         if (!mesh->components[component].closed_manifold || !(buried[component] > mostly * all[component]))
             continue;
         f->wrong[v] = f->colours[f->patches[v]] != NO_COLOUR && f->sides[v] == 0;
+        f->reasons[v] = CSCD_LENS_LOOKS_OUT;
     }
 }
 

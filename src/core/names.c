@@ -84,6 +84,8 @@ static const char *const intersection_kinds[] = {"crossing", "coplanar", "folded
 static const char *const left_outs[] = {"pairs",    "curves", "patches", "overlaps",
                                         "cut-offs", "depths", "parts"};
 static const char *const curve_ends[] = {"none", "vertex", "border", "junction", "left out"};
+static const char *const lens_reasons[] = {"buried",       "inside out", "looks out",
+                                           "smaller side", "edge",       "flush"};
 static const char *const reasons[] = {
     [CSCD_REASON_METHOD] = "every pair of features whose volumes overlap is tested",
     [CSCD_REASON_SURFACE] = "open, non-manifold or inconsistently oriented",
@@ -113,7 +115,8 @@ static const struct name_list {
              [CSCD_CONTACT_KINDS] = NAMES(contact_kinds),
              [CSCD_INTERSECTION_KINDS] = NAMES(intersection_kinds),
              [CSCD_LEFT_OUTS] = NAMES(left_outs),
-             [CSCD_CURVE_ENDS] = NAMES(curve_ends)};
+             [CSCD_CURVE_ENDS] = NAMES(curve_ends),
+             [CSCD_LENS_REASONS] = NAMES(lens_reasons)};
 
 static struct name_list list_of(cscd_enumeration of) {
     const bool known = (unsigned)of < sizeof lists / sizeof *lists;

@@ -331,6 +331,24 @@ TEST(untangling) {
     assert_true(reached == expected && found.moved == (found.pairs_before > 0));
 }
 
+TEST(lenses) {
+    twins t;
+    cscd_lenses found;
+    assert_int_equal(cscd_detector_find_lenses(t.c, &t.v1, nullptr, &found), CSCD_OK);
+    const cscd::lenses ours = t.ours.find_lenses(t.x1);
+    assert_int_equal(ours.size(), found.count);
+    assert_true(ours.thickness == found.thickness && ours.pairs == found.pairs);
+    std::size_t points = 0;
+    for (const cscd_lens &lens : ours) {
+        for (const cscd_lens_point &point : cscd::points(ours, lens)) {
+            assert_true(point.thickness <= lens.thickness);
+            points++;
+        }
+    }
+    assert_int_equal(points, found.point_count);
+    assert_int_equal(cscd::points(ours).size(), points);
+}
+
 TEST(bounds) {
     twins t;
     std::vector<float> floats(t.mesh.vertex_count()), expected(floats.size());

@@ -123,6 +123,22 @@ static void read_untangled(proof *p) {
 
 static const proof_call untangling = {"detector_untangle", PROOF_ASKS, untangle_moment, read_untangled};
 
+static cscd_status find_lenses(proof *p) {
+    cscd_view x;
+    return cscd_detector_find_lenses(p->detector, at_moment(p, 3, &x), NULL, &p->answer.lenses);
+}
+
+static void read_lenses(proof *p) {
+    const cscd_lenses *found = &p->answer.lenses;
+    proof_add(p, &found->thickness, sizeof found->thickness);
+    proof_add(p, &found->pairs, sizeof found->pairs);
+    proof_add(p, &found->undecided, sizeof found->undecided);
+    proof_add_items(p, found->items, found->count, sizeof *found->items);
+    proof_add_items(p, found->points, found->point_count, sizeof *found->points);
+}
+
+static const proof_call lenses = {"detector_find_lenses", PROOF_ASKS, find_lenses, read_lenses};
+
 /* ---- a line --------------------------------------------------------------------------------------------- */
 
 static cscd_status create_line(proof *p) {
@@ -224,6 +240,11 @@ static const proof_row rows[] = {
     {"safe motion", {&safe_motion}, open_detector, .family = SCENE_TWO_SPHERES},
     {"untangling",
      {&untangling},
+     open_detector,
+     .family = SCENE_TWO_SPHERES,
+     .allocates = "the memory of one call may be large, and is given back"},
+    {"lenses",
+     {&lenses},
      open_detector,
      .family = SCENE_TWO_SPHERES,
      .allocates = "the memory of one call may be large, and is given back"},

@@ -176,6 +176,17 @@ static void untangle_start(caller_state *s) {
               "cscd_detector_untangle");
 }
 
+static void find_lenses(caller_state *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
+    cscd_lenses found;
+    OPTIONS(cscd_intersection_options, cscd_intersection_defaults_sized, options);
+    REFUSE(cscd_intersection_options, options.value,
+           cscd_detector_find_lenses(s->detector, x0, &options.value, &found),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_detector_find_lenses(s->detector, x0, &options.value, &found),
+              "cscd_detector_find_lenses");
+}
+
 static void sum_energies(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT);
     cscd_energy *energy = NULL;
@@ -226,6 +237,7 @@ int main(void) {
     create_plan_from_parts(&s);
     create_detector(&s);
     ask_detector(&s);
+    find_lenses(&s);
     untangle_start(&s);
     make_motion_safe(&s);
     sum_energies(&s);

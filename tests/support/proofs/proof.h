@@ -91,6 +91,7 @@ typedef struct proof {
         cscd_truncation truncation;
         cscd_safe_motion safe;
         cscd_untangled untangled;
+        cscd_lenses lenses;
         cscd_contact_part_pairs part_pairs;
         cscd_events events;
         void *words[8]; /* of a row whose types are not known here */
