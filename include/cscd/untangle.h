@@ -77,8 +77,9 @@ typedef struct cscd_lens {
     size_t thickest;  /* the index of the point with the greatest thickness, of several the first */
     double thickness; /* of that one */
 
-    /* A unit vector: the way on which the points leave together. It is the vector area of the patch, if all of
-     * its points are in this lens, else the mean of their ways. 0 if these are no way. */
+    /* A unit vector: the way on which the points leave together. Of a closed component it is the vector area of
+     * the patch, which depends on the curves around it alone, if all of its points are in this lens; else the mean
+     * of their ways, or 0 where these cancel each other. */
     double axis[3];
 } cscd_lens;
 

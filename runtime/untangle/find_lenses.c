@@ -150,7 +150,10 @@ static uint32_t patch_of_range(const lens_search *s, const lens_range *range) {
     return UINT32_MAX;
 }
 
-/* The mean of the ways, or of directions where none is a way. */
+/* Means that are shorter than this share of the ways are none. */
+static const double least_mean = 0.05;
+
+/* Writes the mean of the ways, or of directions where none is a way, as a unit vector; false: they cancel each other. */
 static bool mean_way(const lens_search *s, const lens_range *range, double out[3]) {
     double sum[3] = {0.0, 0.0, 0.0}, all = 0.0;
     for (size_t i = range->begin; i < range->end; i++) {
@@ -160,12 +163,12 @@ static bool mean_way(const lens_search *s, const lens_range *range, double out[3
         all += weight;
     }
     const double length = sqrt(vec3_dot(sum, sum));
-    const bool any = length > 1e-6 * all;
+    const bool any = length > least_mean * all;
     for (int k = 0; k < 3; k++) out[k] = any ? sum[k] / length : 0.0;
     return any;
 }
 
-/* What is buried leaves against its outward normals, and what is inside out along them. */
+/* Where ways cancel each other, what is buried leaves against its outward normals, and what is inside out along them. */
 static void find_axis(const lens_search *s, const lens_range *range, cscd_lens *out) {
     double area[3];
     bool closed;
@@ -173,11 +176,11 @@ static void find_axis(const lens_search *s, const lens_range *range, cscd_lens *
     const bool any = mean_way(s, range, out->axis);
     const uint32_t group = s->points[range->begin].names[1];
     if (!range->whole || out->reason >= CSCD_LENS_EDGE) return;
-    if (!lens_vector_area(&s->finder, s->x, group, &closed, area)) return;
-    if (closed && out->reason <= CSCD_LENS_INSIDE_OUT)
-        sign = out->reason == CSCD_LENS_BURIED ? -1.0 : 1.0;
-    else if (any)
+    if (!lens_vector_area(&s->finder, s->x, group, &closed, area) || !closed) return;
+    if (any)
         sign = vec3_dot(area, out->axis) < 0.0 ? -1.0 : 1.0;
+    else if (out->reason <= CSCD_LENS_INSIDE_OUT)
+        sign = out->reason == CSCD_LENS_BURIED ? -1.0 : 1.0;
     for (int k = 0; k < 3 && sign != 0.0; k++) out->axis[k] = sign * area[k];
 }
 

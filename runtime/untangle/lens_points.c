@@ -15,14 +15,18 @@ static const double least_slope = 0.1;
 /* The vector area of a patch is at least this share of its area, if it means something. */
 static const double least_vector_area = 0.05;
 
+static double sign_outwards(const lens_finder *f, uint32_t triangle) {
+    return f->turned != NULL && f->turned[f->w->mesh->triangle_components[triangle]] ? -1.0 : 1.0;
+}
+
 void lens_normal(const lens_finder *f, const double *x, uint32_t triangle, double out[3]) {
     const uint32_t *corners = f->w->mesh->triangles[triangle];
     double u[3], v[3];
     vec3_subtract(x + 3 * (size_t)corners[1], x + 3 * (size_t)corners[0], u);
     vec3_subtract(x + 3 * (size_t)corners[2], x + 3 * (size_t)corners[0], v);
     vec3_cross(u, v, out);
-    const double length = sqrt(vec3_dot(out, out));
-    for (int k = 0; k < 3; k++) out[k] = length > 0.0 ? out[k] / length : 0.0;
+    const double length = sqrt(vec3_dot(out, out)), sign = sign_outwards(f, triangle);
+    for (int k = 0; k < 3; k++) out[k] = length > 0.0 ? sign * out[k] / length : 0.0;
 }
 
 static bool triangle_is_closed(const lens_finder *f, uint32_t triangle) {
@@ -72,7 +76,7 @@ bool lens_vector_area(const lens_finder *f, const double *x, uint32_t patch, boo
             vec3_subtract(x + 3 * (size_t)corners[1], x + 3 * (size_t)corners[0], u);
             vec3_subtract(x + 3 * (size_t)corners[2], x + 3 * (size_t)corners[0], w);
             vec3_cross(u, w, across);
-            vec3_add_scaled(sum, 0.5, across, sum);
+            vec3_add_scaled(sum, 0.5 * sign_outwards(f, t), across, sum);
             area += 0.5 * sqrt(vec3_dot(across, across));
             *closed = triangle_is_closed(f, t);
         }
@@ -83,10 +87,12 @@ bool lens_vector_area(const lens_finder *f, const double *x, uint32_t patch, boo
     return true;
 }
 
-/* The axis of a patch, if it has one: towards the other sheet, or for buried patches of closed components into the component. */
+/* The axis of a patch, if it has one: towards the other sheet, or for patches of closed components in others into the component,
+ * and where that is inside out, out of it. */
 static bool patch_axis(const lens_finder *f, const double *x, size_t first, size_t end, double out[3]) {
     const cscd_mesh *mesh = f->w->mesh;
-    double own[3] = {0.0, 0.0, 0.0}, others[3] = {0.0, 0.0, 0.0}, towards = -1.0;
+    double own[3] = {0.0, 0.0, 0.0}, others[3] = {0.0, 0.0, 0.0};
+    double towards = f->sides[entry_number(f->entries[OF_VERTICES][first])] < 0 ? 1.0 : -1.0;
     bool closed;
     if (!lens_vector_area(f, x, entry_patch(f->entries[OF_VERTICES][first]), &closed, out)) return false;
     if (!closed || f->set.count == 0 || !triangle_is_closed(f, f->set.items[0])) {

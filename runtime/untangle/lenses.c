@@ -9,6 +9,7 @@ cscd_status lenses_find(lens_finder *f, const cscd_intersections *found, const d
                         const lens_rules *rules) {
     f->point_count = 0;
     f->thickness = 0.0;
+    f->turned = found->patches->turned;
     if (!wrong_sides_find(f, found)) return CSCD_OUT_OF_MEMORY;
     lens_folds_halve(f, found->curves);
     if (!lens_patches_list(f, found->curves)) return CSCD_OUT_OF_MEMORY;

@@ -43,6 +43,7 @@ typedef struct lens_finder {
     uint8_t *reasons; /* per vertex that is wrong: a cscd_lens_reason */
     bool *folded;     /* per vertex: its patch is half of one */
     int8_t *sides;    /* per vertex: 1 in a body, -1 where a body winds around it less than 0 times, else 0 */
+    const bool *turned;  /* per component: it is taken as turned around; NULL: none */
     uint32_t *crossings; /* per edge: how many curve points it has */
     uint32_t *stamps;    /* per triangle */
     uint32_t *queue;     /* per vertex or triangle */
@@ -111,7 +112,7 @@ static inline uint32_t curve_piece_triangle(const cscd_curves *curves, size_t pi
  * *closed: its last triangle is of a closed component. */
 bool lens_vector_area(const lens_finder *f, const double *x, uint32_t patch, bool *closed, double out[3]);
 
-/* The unit normal of a triangle; 0 if it has no area. */
+/* The outward unit normal of a triangle; 0 if it has no area. */
 void lens_normal(const lens_finder *f, const double *x, uint32_t triangle, double out[3]);
 
 /* Writes the place, and the way there from a point at `from`. The way out of a closed component leads along its normals, and from

@@ -256,6 +256,7 @@ TEST(what_is_cancelled_is_the_best_so_far) {
     for (int at = 1; at <= calls && at < 20; at++) {
         log = (stage_log){.cancel_at = at};
         expect_ok(untangle_at(r, r->shape.x0));
+        log = (stage_log){.cancel_at = 0}; /* not even what checks the result */
         expect_promises(r, r->shape.x0);
     }
     close_rig(r);
