@@ -237,7 +237,7 @@ COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 # What installs packages; a build that leaves expat out on purpose does not ask for it.
 PACKAGES = BASELINES=$(BASELINES) EXPAT=$(if $(WITHOUT_EXPAT),0,1) .ci/packages
 
-.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-without-sensors test-blender blender-extension test-vtk test-engine windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-readers test-fuzz test-faults FORCE
+.PHONY: all python wheel wheels test-wheels sdist test-python programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench reproduce bench-charge bench-peers bench-instructions referee bench-plot claims manual performance check check-run test test-run test-threads test-threads-run test-without-baselines test-without-sensors test-blender blender-extension test-vtk test-engine windows windows-libraries windows-zip test-windows test-windows-run test-bridges test-farm test-mutants test-aarch64 test-s390x wasm test-wasm test-riscv64 deb test-deb test-builds cscd-mpi python-oracle benchmarks template lint format examples clean help fuzz-elementary fuzz-surfaces fuzz-untangle fuzz-readers test-fuzz test-faults FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -522,6 +522,12 @@ fuzz-surfaces: packages
 	@$(MAKE) --no-print-directory $(BUILD)/tests/fuzz/fuzz_surfaces
 	@$(BUILD)/tests/fuzz/fuzz_surfaces $(SCENES) $(SEED)
 
+# Random tangles, untangled and judged by whole numbers and by what is promised; 0 is no limit.
+TANGLES ?= 0
+fuzz-untangle: packages
+	@$(MAKE) --no-print-directory $(BUILD)/tests/fuzz/fuzz_untangle
+	@$(BUILD)/tests/fuzz/fuzz_untangle $(SECONDS) $(TANGLES) $(SEED)
+
 # Files of every format with random damage, and random scenes against exact answers, SECONDS for each kind; SEED: hexadecimal.
 FUZZERS := $(patsubst %.c,$(BUILD_ROOT)/sanitize/%,$(FUZZ_SOURCES))
 test-fuzz: packages
@@ -691,9 +697,10 @@ help:
 	@echo 'make referee   pairs of triangles beside those of CGAL, tetgen and MeshLab (installs these; REFEREE=--quick)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make fuzz-surfaces   curves, patches and winding numbers against exact answers, [SCENES=1000000] [SEED=1]'
+	@echo 'make fuzz-untangle   random tangles, each result against exact answers and promises, [SECONDS=60] [TANGLES=0] [SEED=1]'
 	@echo 'make fuzz-readers   files of every format by coverage-guided fuzzing, [SECONDS=60] for each, [FORMATS="gltf ply"] (installs clang);'
 	@echo '               KEEP=1 keeps those that reach new code in tests/fuzz/corpus'
-	@echo 'make test-fuzz   the kept files, damaged files of every format, and the two above, [SECONDS=60] for each kind, [SEED=1]'
+	@echo 'make test-fuzz   the kept files, damaged files of every format, and the three kinds of scenes, [SECONDS=60] for each kind, [SEED=1]'
 	@echo 'make test-faults   every command when memory, disk or an input ends early, [SHARE=1] of the places, from [SEED=1] on'
 	@echo 'make template  bundle the page of the reports, after changes in tool/report/web (needs node and npm)'
 	@echo 'make lint      format, file sizes, rooms, names, exported symbols'

@@ -142,8 +142,9 @@ typedef struct cscd_untangle_options {
     uint32_t reserved; /* 0 */
 
     /* How strongly each vertex is drawn to where it was given, relative to others: vertex_count numbers above
-     * 0. INFINITY pins it. NULL, the default: 1 each. Vertices of obstacles, vertices that are not active and
-     * those without triangles are pinned anyway. */
+     * 0, taken as 1e-12 where they are less and as 1e12 where they are more. INFINITY pins it. NULL, the
+     * default: 1 each. Vertices of obstacles, vertices that are not active and those without triangles are
+     * pinned anyway, and all vertices of a seam are where one is. */
     const double *weights;
 
     /* Clean positions to start from, such as the result of the frame before; NULL, the default: none. */

@@ -17,21 +17,24 @@ static double longest_way(const untangle_work *w, const double *from, const doub
     return sqrt(squared);
 }
 
-cscd_status approach_once(untangle_work *w, double *x, const double *to) {
+cscd_status approach_once(untangle_work *w, double *x, const double *to, bool *moved) {
+    const size_t size = 3 * (size_t)w->mesh->vertex_count * sizeof *x;
     const cscd_response_options options = {.struct_size = sizeof options,
                                            .inverse_masses = w->inverse_masses};
     cscd_safe_motion motion;
     cscd_status status = solver_make_safe(w->detector, WORK_VIEW(w, x), WORK_VIEW(w, to), &options,
                                           WORK_MUTABLE(w, w->reached), &motion);
-    if (status == CSCD_OK) memcpy(x, w->reached, 3 * (size_t)w->mesh->vertex_count * sizeof *x);
+    *moved = status == CSCD_OK && memcmp(x, w->reached, size) != 0;
+    if (*moved) memcpy(x, w->reached, size);
     return status;
 }
 
 static cscd_status go_safely(untangle_work *w, double *x, double *before) {
     const size_t size = 3 * (size_t)w->mesh->vertex_count * sizeof *x;
     for (int i = 0; i < APPROACHES && work_goes_on(w); i++) {
+        bool moved;
         memcpy(before, x, size);
-        cscd_status status = approach_once(w, x, w->goal);
+        cscd_status status = approach_once(w, x, w->goal, &moved);
         if (status != CSCD_OK) return status;
         if (!(longest_way(w, before, x) > least_way * w->graph.edge_length)) break;
     }

@@ -193,6 +193,7 @@ static cscd_status go_along_step(descent *d, double slope, double *gain) {
         double energy;
         for (size_t k = 0; k < n; k++) d->trial[k] = d->x[k] + longest * d->step[k];
         work_flush(w, d->trial);
+        if (!work_in_range(w, d->trial)) continue;
         cscd_status status = solver_max_step(w->detector, WORK_VIEW(w, d->x), WORK_VIEW(w, d->trial),
                                              WORK_MUTABLE(w, d->tried), &free);
         if (status == CSCD_IN_CONTACT || (status == CSCD_OK && !free.moved)) return CSCD_OK;
@@ -216,7 +217,8 @@ static cscd_status go_along_step(descent *d, double slope, double *gain) {
 static cscd_status take_steps(descent *d) {
     untangle_work *w = d->w;
     choose_stiffness(d);
-    if (!(d->barrier.stiffness > 0.0)) return CSCD_OK;
+    if (d->barrier.reach < least_length) return CSCD_OK;
+    if (!(d->barrier.stiffness > 0.0 && d->barrier.stiffness < (double)INFINITY)) return CSCD_OK;
     cscd_status status = evaluate_at(d, d->x, &d->energy);
     for (uint32_t i = 0; status == CSCD_OK && i < w->options.max_steps && work_goes_on(w); i++) {
         double slope = 0.0, gain = 0.0;

@@ -257,6 +257,7 @@ static cscd_status push_in_rounds(push_work *p) {
             break;
         status = push_once(p, &found, round);
         if (status != CSCD_OK) return status;
+        if (!work_in_range(w, p->x)) break;
         w->found.rounds++;
     }
     return CSCD_OK;

@@ -66,7 +66,7 @@ cscd_status work_settle(untangle_work *w, cscd_status status) {
 }
 
 /* 0x1p-300 is the least magnitude. */
-static const double least_magnitude = 0x1p-290;
+static const double least_magnitude = 0x1p-290, greatest_magnitude = 0x1p300;
 
 void work_flush(const untangle_work *w, double *x) {
     const size_t n = 3 * (size_t)w->mesh->vertex_count;
@@ -75,13 +75,21 @@ void work_flush(const untangle_work *w, double *x) {
     }
 }
 
+bool work_in_range(const untangle_work *w, const double *x) {
+    const size_t n = 3 * (size_t)w->mesh->vertex_count;
+    for (size_t i = 0; i < n; i++) {
+        if (!(fabs(x[i]) <= greatest_magnitude)) return false;
+    }
+    return true;
+}
+
 /* Pairs that are nearer than they have to keep: a list of what is at most a hair farther. */
 static cscd_status count_near(untangle_work *w, const double *x, size_t *near) {
     const double kept = config_greatest_separation(&w->detector->config);
     cscd_proximities pairs;
     *near = 0;
     if (!(kept > 0.0)) return CSCD_OK;
-    cscd_status status = solver_find_near(w->detector, WORK_VIEW(w, x), 1e-6 * kept,
+    cscd_status status = solver_find_near(w->detector, WORK_VIEW(w, x), max_of(1e-6 * kept, least_length),
                                           CSCD_NEAR_PAIRS | CSCD_NEAR_BEYOND, &pairs);
     if (status != CSCD_OK) return status;
     for (size_t i = 0; i < pairs.count; i++) *near += pairs.items[i].distance < pairs.items[i].separation;
@@ -214,10 +222,11 @@ enum { HEALINGS = 60 };
 /* Lets pairs part that are nearer than they have to keep, but do not touch. */
 static cscd_status heal_gaps(untangle_work *w, double *x) {
     tangle_count count;
+    bool moved = true; /* what has not moved once will not move again */
     cscd_status status = work_count(w, x, &count);
-    for (int i = 0; i < HEALINGS && work_goes_on(w); i++) {
+    for (int i = 0; i < HEALINGS && moved && work_goes_on(w); i++) {
         if (status != CSCD_OK || count.pairs > 0 || count.near == 0) break;
-        status = approach_once(w, x, x);
+        status = approach_once(w, x, x, &moved);
         if (status == CSCD_OK) status = work_count(w, x, &count);
     }
     return status;
@@ -248,7 +257,12 @@ static void carry_displacement(untangle_work *w, const double *start, const doub
 static cscd_status follow_start(untangle_work *w, double *x, double *start_input) {
     carry_displacement(w, x, start_input, w->options.steady, w->goal);
     carry_displacement(w, x, start_input, 1.0, start_input);
-    return work_settle(w, approach_once(w, x, start_input));
+    if (!work_in_range(w, w->goal) || !work_in_range(w, start_input)) {
+        memcpy(w->goal, w->input, 3 * (size_t)w->mesh->vertex_count * sizeof *w->goal);
+        return CSCD_OK;
+    }
+    bool moved;
+    return work_settle(w, approach_once(w, x, start_input, &moved));
 }
 
 static cscd_status read_start(untangle_work *w, double *x, double *start_input, bool *carried) {
@@ -265,6 +279,17 @@ static cscd_status read_start(untangle_work *w, double *x, double *start_input, 
     return status;
 }
 
+/* Motions leave vertices that are not active where they are: is each of them in the start where it is in the input? */
+static bool inactive_stayed(const untangle_work *w, const double *x) {
+    const bool *active = w->detector->space.active.vertices;
+    for (size_t v = 0; active != NULL && v < w->mesh->vertex_count; v++) {
+        for (size_t k = 3 * v; k < 3 * v + 3; k++) {
+            if (!active[v] && x[k] != w->input[k]) return false;
+        }
+    }
+    return true;
+}
+
 static cscd_status try_given(untangle_work *w, best_result *best, double *x, double *scratch) {
     tangle_count count;
     bool carried = false;
@@ -276,6 +301,7 @@ static cscd_status try_given(untangle_work *w, best_result *best, double *x, dou
             w->context, CSCD_INVALID_ARGUMENT,
             "start is not clean: %zu pairs of triangles intersect, and %zu pairs of features are too near",
             count.pairs, count.near);
+    if (!inactive_stayed(w, x)) return CSCD_OK; /* no way leads from there */
     if (carried) status = follow_start(w, x, scratch);
     if (status == CSCD_OK) status = refine_start(w, best, x, !carried, CSCD_UNTANGLE_GIVEN);
     if (status != CSCD_OK || is_clean(best->count)) return status;
@@ -359,12 +385,9 @@ static cscd_status search_result(untangle_work *w, best_result *best, double *x,
         if (status != CSCD_OK || is_clean(best->count)) return status;
         memcpy(w->goal, w->input, 3 * (size_t)w->mesh->vertex_count * sizeof *w->goal);
     }
-    if (best->count.pairs == 0) { /* some pairs are too near, no more */
-        memcpy(x, w->input, 3 * (size_t)w->mesh->vertex_count * sizeof *x);
-        status = refine_start(w, best, x, false, CSCD_UNTANGLE_PUSHED);
-        if (status != CSCD_OK || is_clean(best->count)) return status;
-    }
-    return try_starts(w, best, x);
+    if (w->found.pairs_before > 0) return try_starts(w, best, x);
+    memcpy(x, w->input, 3 * (size_t)w->mesh->vertex_count * sizeof *x); /* some pairs are too near, no more */
+    return refine_start(w, best, x, false, CSCD_UNTANGLE_PUSHED);
 }
 
 static void sum_up(untangle_work *w, const best_result *best) {

@@ -45,6 +45,12 @@ cscd_status work_settle(untangle_work *w, cscd_status status);
  * vertices. */
 void work_flush(const untangle_work *w, double *x);
 
+/* The least length that proximity takes. */
+static const double least_length = 0x1p-300;
+
+/* Are all coordinates numbers that the exact predicates take? Steps of systems that are nearly singular may lead anywhere. */
+bool work_in_range(const untangle_work *w, const double *x);
+
 /* Is it clean? *pairs: how many intersect; *near: how many others are nearer than they have to keep. */
 typedef struct tangle_count {
     size_t pairs, near;
@@ -71,8 +77,8 @@ uint32_t elastic_rings(const untangle_work *w, double length);
 /* Moves clean positions, in place, as near to the goal as motions free of contact lead by themselves. */
 cscd_status approach_goal(untangle_work *w, double *x);
 
-/* One such motion, towards positions that may be x itself: then only what is too near parts. */
-cscd_status approach_once(untangle_work *w, double *x, const double *to);
+/* One such motion, towards positions that may be x itself: then only what is too near parts. *moved: has any coordinate changed? */
+cscd_status approach_once(untangle_work *w, double *x, const double *to, bool *moved);
 
 /* Moves clean positions, in place, by certified steps to where the elastic energy of their displacement from the goal and a
  * barrier between surfaces are least. */

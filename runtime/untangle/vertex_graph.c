@@ -40,41 +40,71 @@ static void fix_vertices(vertex_graph *g, const graph_source *from) {
 /* Half a cotangent, within bounds: thin triangles must not make a row negative, or far larger than others. */
 static const double least_coupling = 0.05, largest_coupling = 5.0;
 
-static double half_cotangent(const double *at, const double *a, const double *b) {
-    double u[3], v[3], across[3];
+/* The cross product of two sides, which are measured in the unit: areas of the largest and smallest meshes are numbers, too. */
+static void cross_sides(double unit, const double *at, const double *a, const double *b, double u[3],
+                        double v[3], double across[3]) {
     vec3_subtract(a, at, u);
     vec3_subtract(b, at, v);
+    for (int k = 0; k < 3; k++) {
+        u[k] /= unit;
+        v[k] /= unit;
+    }
     vec3_cross(u, v, across);
+}
+
+static double half_cotangent(double unit, const double *at, const double *a, const double *b) {
+    double u[3], v[3], across[3];
+    cross_sides(unit, at, a, b, u, v, across);
     const double area = sqrt(vec3_dot(across, across));
     const double half = area > 0.0 ? 0.5 * vec3_dot(u, v) / area : largest_coupling;
     return max_of(least_coupling, min_of(half, largest_coupling));
 }
 
-static double area_of(const double *a, const double *b, const double *c) {
+static double area_of(double unit, const double *a, const double *b, const double *c) {
     double u[3], v[3], across[3];
-    vec3_subtract(b, a, u);
-    vec3_subtract(c, a, v);
-    vec3_cross(u, v, across);
+    cross_sides(unit, a, b, c, u, v, across);
     return 0.5 * sqrt(vec3_dot(across, across));
 }
 
-/* Masses, and couplings of the mesh's edges. Returns the area. */
+static double mean_length(const vertex_graph *g, const double *x) {
+    const cscd_mesh *mesh = g->mesh;
+    double sum = 0.0;
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const uint32_t *ends = mesh->edges[e];
+        sum += sqrt(vec3_squared_distance(x + 3 * (size_t)ends[0], x + 3 * (size_t)ends[1]));
+    }
+    return mesh->edge_count > 0 ? sum / mesh->edge_count : 0.0;
+}
+
+/* A power of two near the length, so that dividing by it rounds nothing. */
+static double unit_of_length(double length) {
+    int exponent = 1;
+    (void)frexp(length, &exponent);
+    return ldexp(1.0, exponent - 1);
+}
+
+/* Masses, and couplings of the mesh's edges, both in the unit. Returns the area. */
 static double add_triangles(vertex_graph *g, const double *x, double *of_edges) {
+    const double unit = unit_of_length(g->edge_length);
     const cscd_mesh *mesh = g->mesh;
     double sum = 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles[t];
         const double *p[3];
         for (int k = 0; k < 3; k++) p[k] = x + 3 * (size_t)corners[k];
-        const double area = area_of(p[0], p[1], p[2]);
+        const double area = area_of(unit, p[0], p[1], p[2]);
         sum += area;
         for (int k = 0; k < 3; k++) {
             g->masses[g->names[corners[k]]] += area / 3.0;
-            of_edges[mesh->triangle_edges[t][k]] += half_cotangent(p[(k + 2) % 3], p[k], p[(k + 1) % 3]);
+            of_edges[mesh->triangle_edges[t][k]] +=
+                half_cotangent(unit, p[(k + 2) % 3], p[k], p[(k + 1) % 3]) / (unit * unit);
         }
     }
     return sum;
 }
+
+/* Weights beyond these are taken as these: their products with stiffnesses must be numbers, and sums of both more than rounding. */
+static const double least_weight = 1e-12, largest_weight = 1e12;
 
 /* A vertex of triangles without area has a thousandth of the mean mass. */
 static void weigh_vertices(vertex_graph *g, double area, const double *weights) {
@@ -83,7 +113,8 @@ static void weigh_vertices(vertex_graph *g, double area, const double *weights) 
     for (uint32_t v = 0; v < n; v++) {
         if (g->names[v] != v) continue;
         g->masses[v] = max_of(g->masses[v], least);
-        if (weights != NULL && !g->fixed[v]) g->masses[v] *= weights[v];
+        if (weights != NULL && !g->fixed[v])
+            g->masses[v] *= max_of(least_weight, min_of(weights[v], largest_weight));
     }
     for (uint32_t v = 0; v < n; v++) g->masses[v] = g->masses[g->names[v]];
 }
@@ -115,16 +146,6 @@ static void list_neighbours(vertex_graph *g, const double *of_edges) {
     g->begins[mesh->vertex_count] = total;
 }
 
-static double mean_length(const vertex_graph *g, const double *x) {
-    const cscd_mesh *mesh = g->mesh;
-    double sum = 0.0;
-    for (uint32_t e = 0; e < mesh->edge_count; e++) {
-        const uint32_t *ends = mesh->edges[e];
-        sum += sqrt(vec3_squared_distance(x + 3 * (size_t)ends[0], x + 3 * (size_t)ends[1]));
-    }
-    return mesh->edge_count > 0 ? sum / mesh->edge_count : 0.0;
-}
-
 cscd_status vertex_graph_make(vertex_graph *g, cscd_context *context, const cscd_mesh *mesh,
                               const graph_source *from) {
     *g = (vertex_graph){.context = context, .mesh = mesh};
@@ -135,10 +156,10 @@ cscd_status vertex_graph_make(vertex_graph *g, cscd_context *context, const cscd
         return context_out_of_memory(context);
     }
     fix_vertices(g, from);
+    g->edge_length = mean_length(g, from->positions);
     const double area = add_triangles(g, from->positions, of_edges);
     weigh_vertices(g, area, from->weights);
     list_neighbours(g, of_edges);
-    g->edge_length = mean_length(g, from->positions);
     context_free(context, of_edges);
     return CSCD_OK;
 }

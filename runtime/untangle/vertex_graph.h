@@ -12,10 +12,11 @@ typedef struct vertex_graph {
     bool *fixed;     /* per vertex: it does not move */
     size_t *begins;  /* per vertex and one more: its range of the next two; empty unless it is an unknown */
     uint32_t *neighbours; /* unknowns, which may repeat at seams */
-    double *couplings;    /* of the edges there: halves of cotangents, clamped */
-    double *masses;       /* a third of the areas of the triangles, times the weight of the caller */
-    double *coupled;      /* per unknown: the sum of its couplings */
-    double edge_length;   /* the mean */
+    /* Both are divided by the square of a power of two near edge_length, so that energies are squares of lengths. */
+    double *couplings;  /* of the edges there: halves of cotangents, clamped */
+    double *masses;     /* a third of the areas of the triangles, times the weight of the caller */
+    double *coupled;    /* per unknown: the sum of its couplings */
+    double edge_length; /* the mean */
 } vertex_graph;
 
 /* What a graph is made from. */

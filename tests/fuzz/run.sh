@@ -1,6 +1,6 @@
 #!/bin/sh
-# Reads the files that fuzzing has kept, and large ones, damages files of every format at random, and compares random scenes with exact
-# answers: run.sh SECONDS SEED, a hexadecimal number, so that a commit's hash will do. BUILD has the fuzzers, built with sanitizers; MAKERS the tool and models that make the files. Each kind
+# Reads the files that fuzzing has kept, and large ones, damages files of every format at random, compares random scenes with exact
+# answers, and judges untangled ones: run.sh SECONDS SEED, a hexadecimal number, so that a commit's hash will do. BUILD has the fuzzers, built with sanitizers; MAKERS the tool and models that make the files. Each kind
 # takes SECONDS. What fails is repeated by the same seed. Its last line is `N passed, M failed`.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -41,5 +41,6 @@ try 'lists of jobs and their results' "$readers" "$seconds" "$seed" "$corpus"/*.
 number=$(printf '%d' "0x$(echo "$seed" | cut -c 1-7)")
 try 'elementary tests' "$BUILD/tests/fuzz/fuzz_elementary" "$seconds" 0 "$number" both
 try 'surfaces' "$BUILD/tests/fuzz/fuzz_surfaces" "$((seconds * 20))" "$number"
+try 'tangles' "$BUILD/tests/fuzz/fuzz_untangle" "$seconds" 0 "$number"
 printf '\n%s passed, %s failed\n' "$passed" "$failed"
 [ "$failed" = 0 ]

@@ -169,3 +169,53 @@ TEST(failed_allocations_change_nothing) {
     balls_close(b);
     assert_int_equal(counter.live, 0);
 }
+
+/* ---- far from 1 ---------------------------------------------------------------------------------------- */
+
+static void scale_balls(ball_rig *b, double scale) {
+    for (size_t k = 0; k < (size_t)3 * ALL; k++) b->x[k] = fabs(b->x[k]) > 1e-9 ? scale * b->x[k] : 0.0;
+}
+
+/* The areas of areas are no doubles, or all 0. */
+TEST(the_size_of_the_mesh_does_not_matter) {
+    for (int i = 0; i < 3; i++) {
+        ball_rig *b = balls_open(cscd_detector_defaults(), NULL);
+        const double scale = (const double[]){1.0, 0x1p280, 0x1p-280}[i];
+        scale_balls(b, scale);
+        expect_ok(balls_untangle(b));
+        assert_true(b->found.clean && b->found.start == CSCD_UNTANGLE_PUSHED && b->found.steps > 0);
+        assert_true(b->found.displacement < 0.5 * scale);
+        balls_close(b);
+    }
+}
+
+TEST(weights_may_be_any_numbers) {
+    for (int i = 0; i < 2; i++) {
+        ball_rig *b = balls_open(cscd_detector_defaults(), NULL);
+        for (size_t v = 0; v < ALL; v++)
+            b->weights[v] = v % 2 == 0 ? 1e300 : (const double[]){1e-300, 1.0}[i];
+        expect_ok(balls_untangle(b));
+        assert_true(b->found.clean);
+        balls_close(b);
+    }
+}
+
+/* A start in which vertices that are not active are elsewhere is of no use; the call goes on without it. */
+TEST(what_is_not_active_stays_whatever_the_start) {
+    ball_rig *b = balls_open(cscd_detector_defaults(), NULL);
+    static double start[ALL * 3];
+    static uint32_t active[ONE];
+    memcpy(start, b->x, sizeof start);
+    for (size_t v = 0; v < ONE; v++) {
+        active[v] = (uint32_t)v;
+        start[3 * (ONE + v)] += 5.0;
+    }
+    expect_ok(cscd_detector_set_active(b->detector, active, ONE));
+    cscd_untangle_options options = cscd_untangle_defaults();
+    options.start = CSCD_DOUBLES(start, ALL);
+    expect_ok(cscd_detector_untangle(b->detector, CSCD_DOUBLES(b->x, ALL), &options,
+                                     CSCD_MUTABLE_DOUBLES(b->reached, ALL), &b->found));
+    assert_true(b->found.clean && b->found.start == CSCD_UNTANGLE_PUSHED);
+    assert_memory_equal(b->reached + (size_t)3 * ONE, b->x + (size_t)3 * ONE, 2 * ONE * sizeof(double[3]));
+    balls_close(b);
+}
