@@ -46,10 +46,10 @@ class Material:
         self.folder, self.build, self.made, self.recording = folder, build, {}, {}
         os.makedirs(folder, exist_ok=True)
 
-    def run(self, program, *arguments):
+    def run(self, program, *arguments, code=0):
         command = [os.path.join(self.build, program), *arguments]
         done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-        if done.returncode != 0:
+        if done.returncode != code:
             raise AssertionError(f"{command}: exit {done.returncode}: {done.stderr.strip()}")
         return done.stdout
 
@@ -135,6 +135,17 @@ class Material:
         recording_file.write_obj(made.model, frames[0], triangles)
         recording_file.write_pc2(made.frames, [recording_file.flat(frame) for frame in frames])
         self.replay_files(made, *options)
+        return made
+
+    def untangled(self, name, *options, code=0):
+        """Returns the page of untangling the flight of the tetrahedra, or some of its frames."""
+        return self.once("untangled-" + name, lambda name: self._untangled(name, options, code))
+
+    def _untangled(self, name, options, code):
+        made, source = Made(self.folder, name), self.tetrahedra()
+        out = made.base + (".obj" if "--frames" in options else ".pc2")
+        self.run("cscd", "untangle", source.model, source.frames, "-o", out, "--json", made.json, "--report", made.page, "--quiet",
+                 *options, code=code)
         return made
 
     def sized(self, name, sizes, apart=9.0, options=()):

@@ -160,12 +160,29 @@ def test_what_is_not_clean_is_not_written():
     pairs = read_json("out.json")["frames"][0]["pairs_after"]
     assert answer.first_line == (f"Not clean: {pairs} pairs before and after; nothing better was found, so nothing was moved. "
                                  "The time was up (--time 1e-09).")
-    assert answer.out.endswith(f"\n\n    pairs  parts\n{pairs:9}  Left x Right\n")
+    assert answer.out.endswith(f"\n\n    pairs  parts, and why they are left\n{pairs:9}  Left x Right: the time was up\n")
     assert answer.error == "cscd: out.obj was not written, since not all is clean; --partial writes the best that was found\n"
     assert Path("out.obj").read_text() == "older"
     root = read_json("out.json")
     assert root["clean"] is False and root["complete"] and root["written"] is None
-    assert root["frames"][0]["left"] == [{"part_a": "Left", "part_b": "Right", "pairs": pairs}] and root["frames"][0]["stopped"]
+    left = [{"part_a": "Left", "part_b": "Right", "pairs": pairs, "reason": "time"}]
+    assert root["frames"][0]["left"] == left and root["frames"][0]["stopped"] and root["answer"] == answer.first_line
+
+
+def test_why_pairs_are_left():
+    """Two parts that are pinned, and flat ones that lie on each other: the one beside them is led out all the same."""
+    points, triangles = ball(0.0)
+    third, _ = ball(3.2)
+    names = [text for name in ("Left", "Right", "Free") for text in ["o " + name] + [""] * (len(triangles) - 1)]
+    shifted = [tuple(corner + 2 * COUNT for corner in triangle) for triangle in triangles]
+    both = balls(1.6)
+    Recording([*both.triangles, *shifted], [[*both.frames[0], *third]]).write_mesh("three.obj", records=names)
+    answer = run("untangle three.obj -o out.obj --pin Left,Right --partial --json out.json", code=3)
+    frame = read_json("out.json")["frames"][0]
+    assert frame["left"] == [{"part_a": "Left", "part_b": "Right", "pairs": frame["pairs_after"], "reason": "immobile"}]
+    table = answer.out.split("\n\n")[1].splitlines()
+    assert table[:2] == ["    pairs  parts, and why they are left", f"{frame['pairs_after']:9}  Left x Right: neither may move"]
+    assert frame["pairs_after"] < frame["pairs_before"] and not frame["stopped"]
 
 
 def test_partial_writes_it():
@@ -228,8 +245,8 @@ def test_frames_that_are_not_clean_are_listed():
     assert answer.first_line == ("Not clean: 3 of 3 frames that crossed or touched, of frames 0 to 2; nothing was moved. "
                                  "In 3 frames the time was up (--time 1e-09).")
     table = answer.out.split("\n\n")[1].splitlines()
-    assert table[0].split() == ["frame", "before", "after", "moved", "by", "most", "of", "them"]
-    assert [row.split()[0] for row in table[1:]] == ["0", "1", "2"] and table[1].endswith("-  Left x Right")
+    assert table[0].split() == ["frame", "before", "after", "moved", "by", "most", "of", "them,", "and", "why"]
+    assert [row.split()[0] for row in table[1:]] == ["0", "1", "2"] and table[1].endswith("-  Left x Right: the time was up")
     assert not os.path.exists("clean.pc2")
     run("untangle balls.obj never.pc2 -o clean.pc2 --time 1e-9 --partial", code=3)
     assert Path("clean.pc2").read_bytes() == Path("never.pc2").read_bytes()

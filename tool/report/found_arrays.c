@@ -124,8 +124,9 @@ void answer_arrays_free(answer_arrays *a) {
 
 /* The number that may still be kept in a frame, so that each later frame is left its share of the whole. */
 static uint32_t room_of(uint32_t most, uint32_t kept, const report_options *options, uint32_t frame) {
-    uint32_t frames = options->last - options->first + 1, to_come = options->last - frame;
-    return most - kept - most / frames * to_come;
+    const uint32_t sets = options->kind == REPORT_UNTANGLED ? 2 : 1; /* of each frame */
+    const uint32_t frames = (options->last - options->first + 1) * sets, place = frame - options->first;
+    return most - kept - most / frames * (frames - 1 - place);
 }
 
 /* Marks the triangles with the kinds of their pairs. */

@@ -26,8 +26,19 @@ static uint32_t choose_stride(const report_options *o) {
     return stride > 1 ? (uint32_t)stride : 1;
 }
 
+uint32_t report_untangled_frames(uint32_t vertex_count) {
+    const uint32_t frames = REPORT_POSITIONS_MAX / 2 / (vertex_count > 0 ? vertex_count : 1);
+    return frames > 1 ? frames : 1;
+}
+
+static bool prepare_untangled(report *r) {
+    r->stride = 1;
+    return answer_arrays_create(&r->options, &r->answers);
+}
+
 static bool prepare_report(report *r) {
     const report_options *o = &r->options;
+    if (o->kind == REPORT_UNTANGLED) return prepare_untangled(r);
     r->stride = choose_stride(o);
     size_t size = cscd_mesh_vertex_count(o->mesh) * sizeof(double[3]);
     if (r->stride > 1 && (r->last_positions = io_realloc(NULL, size)) == NULL) return false;
@@ -117,6 +128,17 @@ bool report_add_interval(report *r, const orientation_row *orientations, const c
                 (!is_due(r, r->last) || orientation_arrays_add(&r->orientations, orientations));
     }
     return (added && add_frame(r, r->last + 1, end)) || out_of_memory(error);
+}
+
+bool report_add_untangled(report *r, const double *before, const double *after, io_error *error) {
+    const uint32_t vertex_count = cscd_mesh_vertex_count(r->options.mesh);
+    if (r->kept.count == 0) {
+        r->unit = choose_unit(before, vertex_count);
+        if (!frame_stream_create(vertex_count, 1.0 / r->unit, &r->frames)) return out_of_memory(error);
+    }
+    r->last = r->options.first + (uint32_t)r->kept.count;
+    r->last_is_kept = true;
+    return (keep_interval(r, r->last, before) && frame_stream_add(&r->frames, after)) || out_of_memory(error);
 }
 
 bool report_add_answers(report *r, uint32_t frame, const cscd_intersections *found, io_error *error) {

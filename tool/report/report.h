@@ -1,5 +1,5 @@
-/* Reports: one HTML page that shows a replay, a plan, or replays side by side, or lists many jobs, and needs
- * no network. */
+/* Reports: one HTML page that shows a replay, a plan, replays side by side, or what was untangled, or lists many
+ * jobs, and needs no network. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -51,7 +51,7 @@ void orientation_row_forget(orientation_row *row);
 
 /* ---- reports ------------------------------------------------------------------------------------------- */
 
-typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;
+typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE, REPORT_UNTANGLED } report_kind;
 
 enum {
     REPORT_POSITIONS_MAX = 4000000,      /* of vertices, over all frames kept, the scenery's included */
@@ -111,8 +111,16 @@ bool report_begin(report *r, const double *positions, io_error *error);
 bool report_add_interval(report *r, const orientation_row *orientations, const cscd_contacts *contacts,
                          const double *end, io_error *error);
 
+/* The next frame of REPORT_UNTANGLED, in place of _begin and _add_interval: where the vertices were, and where they
+ * are. All frames are kept: their number has to fit report_untangled_frames. */
+bool report_add_untangled(report *r, const double *before, const double *after, io_error *error);
+
+/* How many frames of a mesh a page has room for, before and after; 1 at least. */
+uint32_t report_untangled_frames(uint32_t vertex_count);
+
 /* Adds what intersects in a frame: pairs and, if they were asked for, curves and depths of vertices. Frames
- * come in their order, those that were not checked are left out. */
+ * come in their order, those that were not checked are left out. Of REPORT_UNTANGLED, 2 i is the i-th frame before,
+ * and 2 i + 1 after. */
 bool report_add_answers(report *r, uint32_t frame, const cscd_intersections *found, io_error *error);
 
 /* The name of a part, in the buffer or elsewhere; UINT32_MAX stands for what is in no part. */
@@ -135,9 +143,10 @@ typedef struct report_summary {
 } report_summary;
 
 /* Puts the page at path in one go: until it is complete, and if that fails, an older file stays as it is. A
- * pipe or a device is written to directly. preprocess: a JSON object as text, or NULL. Once. */
+ * pipe or a device is written to directly. made: a JSON object as text, of REPORT_PREPROCESS or REPORT_UNTANGLED what
+ * it has made, or NULL. Once. */
 bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
-                  const char *preprocess, io_error *error);
+                  const char *made, io_error *error);
 
 /* ---- the page of many jobs ----------------------------------------------------------------------------- */
 

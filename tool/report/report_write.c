@@ -235,11 +235,11 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     json_end_object(out);
 }
 
-/* Writes the document that goes with the arrays; summaries and a preprocess are JSON already. */
+/* Writes the document that goes with the arrays; summaries and what was made are JSON already. */
 typedef struct attached {
     const report_summary *summaries;
     size_t summary_count;
-    const char *preprocess;
+    const char *made;
 } attached;
 
 /* Long tables of theirs become arrays of the page. False: out of memory. */
@@ -261,7 +261,7 @@ static bool write_summaries(json *out, const attached *with, page_arrays *arrays
 }
 
 static bool write_json(FILE *file, const report *r, page_arrays *arrays, const attached *with) {
-    static const char *const kinds[] = {"replay", "preprocess", "compare"};
+    static const char *const kinds[] = {"replay", "preprocess", "compare", "untangled"};
     json out = {.file = file};
     json_begin_object(&out, NULL);
     json_integer(&out, "format", 1);
@@ -270,10 +270,12 @@ static bool write_json(FILE *file, const report *r, page_arrays *arrays, const a
     json_string(&out, "generator", r->options.generator);
     write_scene(&out, r, arrays);
     const bool made = write_summaries(&out, with, arrays);
-    if (with->preprocess != NULL)
-        json_verbatim(&out, "preprocess", with->preprocess);
+    const bool untangled = r->options.kind == REPORT_UNTANGLED;
+    if (with->made != NULL && !untangled)
+        json_verbatim(&out, "preprocess", with->made);
     else
         json_null(&out, "preprocess");
+    if (with->made != NULL && untangled) json_verbatim(&out, "untangled", with->made);
     json_end_object(&out);
     return made;
 }
@@ -294,16 +296,16 @@ static char *make_json(const report *r, page_arrays *arrays, const attached *wit
 /* ---- the file ---------------------------------------------------------------------------------------- */
 
 bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
-                  const char *preprocess, io_error *error) {
+                  const char *made, io_error *error) {
     report_template page;
     if (!report_template_load(TEMPLATE_REPORT, &page, error)) return false;
     page_arrays arrays = {.count = 0};
-    const attached with = {summaries, summary_count, preprocess};
+    const attached with = {summaries, summary_count, made};
     char *text = NULL;
-    bool made = (r->options.mesh == NULL || report_keep_last(r)) && page_arrays_list(r, &arrays) &&
-                (text = make_json(r, &arrays, &with)) != NULL;
-    bool written = made ? page_file_write(path, &page, text, &arrays, error)
-                        : io_fail(error, "%s: out of memory for the report", path);
+    bool listed = (r->options.mesh == NULL || report_keep_last(r)) && page_arrays_list(r, &arrays) &&
+                  (text = make_json(r, &arrays, &with)) != NULL;
+    bool written = listed ? page_file_write(path, &page, text, &arrays, error)
+                          : io_fail(error, "%s: out of memory for the report", path);
     free(text);
     page_arrays_free(&arrays);
     return written;

@@ -50,6 +50,8 @@ static const option_row rows[] = {
     {"json", "OUT.json", read_output_path, offsetof(untangle_options, json_path),
      "write what was found, frame by frame; - is the standard output, and the text for people then goes to the standard "
      "error"},
+    {"report", "OUT.html", read_output_path, offsetof(untangle_options, report_path),
+     "write a page that shows it before and after, what crosses, and how far vertices moved"},
     {"quiet", NULL, read_flag, offsetof(untangle_options, quiet),
      "no progress, no warnings, nothing on the standard output"},
 };
@@ -69,8 +71,8 @@ const option_table untangle_table = {
     .examples = {
         {"untangle body.obj -o clean.obj",
          "Move the vertices of a mesh until nothing crosses or touches, and write it with all else as it was."},
-        {"untangle body.obj body.pc2 -o clean.pc2 --frames 60:120 --steady 0.5",
-         "The same of the frames 60 to 120, with displacements that do not jump from frame to frame."},
+        {"untangle body.obj body.pc2 -o clean.pc2 --frames 60:120 --steady 0.5 --report clean.html",
+         "The same of the frames 60 to 120, with displacements that do not jump from frame to frame, and a page to look at them."},
         {"untangle shirt.obj --obstacle body=body.obj -o start.obj --gap 2mm --unit m",
          "Move the shirt alone, until it is 2 mm from the body and from itself everywhere: a start for a solver."}}};
 

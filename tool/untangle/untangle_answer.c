@@ -1,6 +1,7 @@
 /* What `cscd untangle` says: a sentence, what is not clean, and all of it as JSON. */
 #include "tool/untangle/untangle_run.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static bool frame_crossed(const untangled_frame *frame) {
@@ -31,64 +32,65 @@ bool untangle_answer_clean(const untangle_answer *a) {
 /* ---- the sentence --------------------------------------------------------------------------------------- */
 
 /* "346 pairs", or "346 pairs and 12 nearer than 1 mm". */
-static void say_pairs(const untangle_answer *a, size_t pairs, size_t near) {
+static void say_pairs(FILE *out, const untangle_answer *a, size_t pairs, size_t near) {
     char text[LENGTH_TEXT_SIZE];
-    printf("%zu pair%s", pairs, pairs == 1 ? "" : "s");
-    if (near > 0) printf(" and %zu nearer than %s", near, length_text(a->gap, &a->unit, text));
+    fprintf(out, "%zu pair%s", pairs, pairs == 1 ? "" : "s");
+    if (near > 0) fprintf(out, " and %zu nearer than %s", near, length_text(a->gap, &a->unit, text));
 }
 
-static void say_what_is_not(const untangle_answer *a) {
+static void say_what_is_not(FILE *out, const untangle_answer *a) {
     char text[LENGTH_TEXT_SIZE];
-    printf(a->gap > 0.0 ? " two triangles cross, touch or are nearer than %s"
-                        : " two triangles cross or touch",
-           length_text(a->gap, &a->unit, text));
+    fprintf(out,
+            a->gap > 0.0 ? " two triangles cross, touch or are nearer than %s"
+                         : " two triangles cross or touch",
+            length_text(a->gap, &a->unit, text));
 }
 
-static void say_moves(const untangle_answer *a, const cscd_untangled *found) {
+static void say_moves(FILE *out, const untangle_answer *a, const cscd_untangled *found) {
     char text[LENGTH_TEXT_SIZE];
-    printf("; %u %s moved, at most %s", found->moved_vertices,
-           found->moved_vertices == 1 ? "vertex" : "vertices",
-           length_text(found->displacement, &a->unit, text));
+    fprintf(out, "; %u %s moved, at most %s", found->moved_vertices,
+            found->moved_vertices == 1 ? "vertex" : "vertices",
+            length_text(found->displacement, &a->unit, text));
     if (found->thickness > 0.0)
-        printf(" (the parts were %s in each other)", length_text(found->thickness, &a->unit, text));
-    putchar('.');
+        fprintf(out, " (the parts were %s in each other)", length_text(found->thickness, &a->unit, text));
+    fputc('.', out);
 }
 
-static void say_mesh(const untangle_answer *a) {
+static void say_mesh(FILE *out, const untangle_answer *a) {
     const untangled_frame *frame = &a->frames[a->first];
     const cscd_untangled *found = &frame->found;
     if (found->clean && !frame_crossed(frame)) {
-        printf("Clean: no");
-        say_what_is_not(a);
-        printf("; nothing was moved.");
+        fprintf(out, "Clean: no");
+        say_what_is_not(out, a);
+        fprintf(out, "; nothing was moved.");
         return;
     }
-    printf(found->clean ? "Clean: " : "Not clean: ");
-    say_pairs(a, found->pairs_before, found->near_before);
+    fprintf(out, found->clean ? "Clean: " : "Not clean: ");
+    say_pairs(out, a, found->pairs_before, found->near_before);
     if (!found->moved) {
-        printf(" before and after; nothing better was found, so nothing was moved.");
+        fprintf(out, " before and after; nothing better was found, so nothing was moved.");
         return;
     }
-    printf(" before, ");
+    fprintf(out, " before, ");
     if (found->clean)
-        printf("none");
+        fprintf(out, "none");
     else
-        say_pairs(a, found->pairs_after, found->near_after);
-    printf(" after");
-    say_moves(a, found);
+        say_pairs(out, a, found->pairs_after, found->near_after);
+    fprintf(out, " after");
+    say_moves(out, a, found);
 }
 
 /* "of frames 60 to 119": those that are done. */
-static void say_span(const untangle_answer *a) {
+static void say_span(FILE *out, const untangle_answer *a) {
     if (a->end - a->first == 1)
-        printf("frame %d", number_of(a, a->first));
+        fprintf(out, "frame %d", number_of(a, a->first));
     else
-        printf("frames %d to %d", number_of(a, a->first), number_of(a, a->end - 1));
-    if (a->choice.step > 1 && a->end - a->first > 1) printf(" in steps of %u", a->choice.step);
+        fprintf(out, "frames %d to %d", number_of(a, a->first), number_of(a, a->end - 1));
+    if (a->choice.step > 1 && a->end - a->first > 1) fprintf(out, " in steps of %u", a->choice.step);
 }
 
 /* The most vertices, the greatest displacement, and where. */
-static void say_most(const untangle_answer *a) {
+static void say_most(FILE *out, const untangle_answer *a) {
     uint32_t most = 0, worst = a->first;
     char text[LENGTH_TEXT_SIZE];
     for (uint32_t i = a->first; i < a->end; i++) {
@@ -97,60 +99,81 @@ static void say_most(const untangle_answer *a) {
     }
     const cscd_untangled *found = &a->frames[worst].found;
     if (most == 0) {
-        printf("; nothing was moved.");
+        fprintf(out, "; nothing was moved.");
         return;
     }
-    printf("; up to %u %s moved in a frame, at most %s (frame %d", most, most == 1 ? "vertex" : "vertices",
-           length_text(found->displacement, &a->unit, text), number_of(a, worst));
+    fprintf(out, "; up to %u %s moved in a frame, at most %s (frame %d", most,
+            most == 1 ? "vertex" : "vertices", length_text(found->displacement, &a->unit, text),
+            number_of(a, worst));
     if (found->thickness > 0.0)
-        printf("; the parts were %s in each other", length_text(found->thickness, &a->unit, text));
-    printf(").");
+        fprintf(out, "; the parts were %s in each other", length_text(found->thickness, &a->unit, text));
+    fprintf(out, ").");
 }
 
-static void say_recording(const untangle_answer *a) {
+static void say_recording(FILE *out, const untangle_answer *a) {
     const uint32_t crossed = count_frames(a, frame_crossed), left = count_frames(a, frame_left);
     const char *what = a->gap > 0.0 ? "crossed, touched or were too near" : "crossed or touched";
     if (crossed == 0) {
-        printf("Clean: in none of ");
-        say_span(a);
-        printf(" do");
-        say_what_is_not(a);
-        printf("; nothing was moved.");
+        fprintf(out, "Clean: in none of ");
+        say_span(out, a);
+        fprintf(out, " do");
+        say_what_is_not(out, a);
+        fprintf(out, "; nothing was moved.");
         return;
     }
     if (left == 0 && crossed > 1)
-        printf("Clean: all %u frames that %s, of ", crossed, what);
+        fprintf(out, "Clean: all %u frames that %s, of ", crossed, what);
     else if (left == 0)
-        printf("Clean: the one frame that %s, of ", a->gap > 0.0 ? "crossed, touched or was too near" : what);
+        fprintf(out, "Clean: the one frame that %s, of ",
+                a->gap > 0.0 ? "crossed, touched or was too near" : what);
     else
-        printf("Not clean: %u of %u frames that %s, of ", left, crossed, what);
-    say_span(a);
-    say_most(a);
+        fprintf(out, "Not clean: %u of %u frames that %s, of ", left, crossed, what);
+    say_span(out, a);
+    say_most(out, a);
 }
 
-static void say_sentence(const untangle_answer *a) {
+static void say_sentence(FILE *out, const untangle_answer *a) {
     const uint32_t done = a->end - a->first;
     if (a->stopped_by != NULL) {
         const size_t length = strlen(a->stopped_by);
-        printf("Not finished: %s%s %u of %u frame%s done.%s", a->stopped_by,
-               length > 0 && strchr(".?", a->stopped_by[length - 1]) != NULL ? "" : ".", done, a->count,
-               a->count == 1 ? "" : "s", done > 0 ? " " : "");
+        fprintf(out, "Not finished: %s%s %u of %u frame%s done.%s", a->stopped_by,
+                length > 0 && strchr(".?", a->stopped_by[length - 1]) != NULL ? "" : ".", done, a->count,
+                a->count == 1 ? "" : "s", done > 0 ? " " : "");
     }
-    if (done > 0 && a->count == 1) say_mesh(a);
-    if (done > 0 && a->count > 1) say_recording(a);
+    if (done > 0 && a->count == 1) say_mesh(out, a);
+    if (done > 0 && a->count > 1) say_recording(out, a);
 }
 
 static bool frame_stopped(const untangled_frame *frame) {
     return frame->found.stopped;
 }
 
-static void say_time(const untangle_answer *a) {
+static void say_time(FILE *out, const untangle_answer *a) {
     const uint32_t stopped = count_frames(a, frame_stopped);
     if (stopped == 0 || a->seconds == 0.0 || a->stopped_by != NULL) return;
     if (a->count == 1)
-        printf(" The time was up (--time %g).", a->seconds);
+        fprintf(out, " The time was up (--time %g).", a->seconds);
     else
-        printf(" In %u frame%s the time was up (--time %g).", stopped, stopped == 1 ? "" : "s", a->seconds);
+        fprintf(out, " In %u frame%s the time was up (--time %g).", stopped, stopped == 1 ? "" : "s",
+                a->seconds);
+}
+
+static void say_all(FILE *out, const untangle_answer *a) {
+    say_sentence(out, a);
+    say_time(out, a);
+    ignored_pairs_say(out, a->ignored);
+}
+
+/* To be freed; NULL: memory is short. */
+static char *sentence_of(const untangle_answer *a) {
+    char *text = NULL;
+    size_t size;
+    FILE *memory = open_memstream(&text, &size);
+    if (memory == NULL) return NULL;
+    say_all(memory, a);
+    if (fclose(memory) == 0) return text;
+    free(text);
+    return NULL;
 }
 
 /* ---- tables --------------------------------------------------------------------------------------------- */
@@ -163,13 +186,26 @@ static void print_names(const untangle_answer *a, const left_pairs *left) {
            left->a == left->b ? "itself" : part_names_at(parts, left->b));
 }
 
+/* Words for people, and those of --json. */
+static const char *reason_words(left_reason reason) {
+    static const char *const words[LEFT_REASONS] = {"no way out of each other was found",
+                                                    "they lie on each other, and no way out was found",
+                                                    "the time was up", "interrupted", "neither may move"};
+    return words[reason];
+}
+
+static const char *reason_name(left_reason reason) {
+    static const char *const names[LEFT_REASONS] = {"no_way", "flush", "time", "stopped", "immobile"};
+    return names[reason];
+}
+
 static void print_left(const untangle_answer *a, const untangled_frame *frame) {
     if (frame->left_count == 0) return;
-    printf("\n%9s  parts\n", "pairs");
+    printf("\n%9s  parts, and why they are left\n", "pairs");
     for (size_t i = 0; i < frame->left_count && i < ROWS_SHOWN; i++) {
         printf("%9zu  ", frame->left[i].pairs);
         print_names(a, &frame->left[i]);
-        putchar('\n');
+        printf(": %s\n", reason_words(frame->left[i].reason));
     }
     if (frame->left_count > ROWS_SHOWN)
         printf("and %zu more; --json OUT.json writes all of them\n", frame->left_count - ROWS_SHOWN);
@@ -181,11 +217,12 @@ static void print_frame(const untangle_answer *a, uint32_t i) {
     printf("%8d  %9zu  %9zu", number_of(a, i), frame->found.pairs_before, frame->found.pairs_after);
     if (a->gap > 0.0) printf("  %9zu", frame->found.near_after);
     printf("  %9s  ", frame->found.moved ? length_text(frame->found.displacement, &a->unit, text) : "-");
-    if (frame->left_count > 0)
-        print_names(a, &frame->left[0]);
-    else
-        putchar('-');
-    putchar('\n');
+    if (frame->left_count == 0) {
+        printf("-\n");
+        return;
+    }
+    print_names(a, &frame->left[0]);
+    printf(": %s\n", reason_words(frame->left[0].reason));
 }
 
 static void print_frames(const untangle_answer *a) {
@@ -194,7 +231,7 @@ static void print_frames(const untangle_answer *a) {
     if (left == 0) return;
     printf("\n%8s  %9s  %9s", "frame", "before", "after");
     if (a->gap > 0.0) printf("  %9s", "too near");
-    printf("  %9s  most of them\n", "moved by");
+    printf("  %9s  most of them, and why\n", "moved by");
     for (uint32_t i = a->first; i < a->end && shown < ROWS_SHOWN; i++) {
         if (!frame_left(&a->frames[i])) continue;
         print_frame(a, i);
@@ -204,9 +241,7 @@ static void print_frames(const untangle_answer *a) {
 }
 
 void untangle_answer_print(const untangle_answer *a) {
-    say_sentence(a);
-    say_time(a);
-    ignored_pairs_say(stdout, a->ignored);
+    say_all(stdout, a);
     putchar('\n');
     if (a->end > a->first && a->count == 1) print_left(a, &a->frames[a->first]);
     if (a->count > 1) print_frames(a);
@@ -235,6 +270,7 @@ static void write_left(const untangle_answer *a, const untangled_frame *frame, j
         write_text(out, "part_a", left->a < parts->count ? parts->names[left->a] : NULL);
         write_text(out, "part_b", left->b < parts->count ? parts->names[left->b] : NULL);
         json_integer(out, "pairs", left->pairs);
+        json_string(out, "reason", reason_name(left->reason));
         json_end_object(out);
     }
     json_end_array(out);
@@ -266,7 +302,10 @@ static void write_frame(const untangle_answer *a, uint32_t i, json *out) {
 }
 
 void untangle_answer_write_json(const untangle_answer *a, json *out) {
+    char *sentence = sentence_of(a);
     json_begin_object(out, NULL);
+    write_text(out, "answer", sentence);
+    free(sentence);
     json_boolean(out, "clean", a->stopped_by == NULL && untangle_answer_clean(a));
     json_boolean(out, "complete", a->stopped_by == NULL);
     write_text(out, "stopped_by", a->stopped_by);

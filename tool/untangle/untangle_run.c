@@ -12,6 +12,7 @@ typedef struct untangle_state {
     cscd_detector *detector;
     untangle_output output;
     output_file json_file;
+    untangle_pages pages;
     untangle_answer answer;
     terminal_progress progress;
     double spread;                     /* in the files' unit; 0: not given */
@@ -155,6 +156,8 @@ static bool prepare_run(untangle_state *u, io_error *error) {
            pin_vertices(u, error) && create_detector(u, error) && allocate_positions(u, error) &&
            untangle_output_open(u->options->output_path, &u->recording, &u->answer.choice, &u->output,
                                 error) &&
+           untangle_pages_open(u->options->report_path, u->answer.count, vertex_count_of(u), &u->pages,
+                               error) &&
            open_json(u, error);
 }
 
@@ -279,6 +282,55 @@ static int compare_left(const void *a, const void *b) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
+/* Marks the parts of which a vertex may move, and at its end whether one of those in no part may. To be freed; NULL:
+ * out of memory. */
+static bool *find_mobile(const untangle_state *u) {
+    const part_names *parts = &u->ignored.parts;
+    const uint32_t own = u->recording.objects[0].vertex_count;
+    bool *mobile = io_zeroed(((size_t)parts->count + 1) * sizeof *mobile);
+    for (uint32_t t = 0; mobile != NULL && t < cscd_mesh_triangle_count(u->recording.mesh); t++) {
+        uint32_t corners[3];
+        const uint32_t part = parts->labels[t] == NO_PART ? parts->count : parts->labels[t];
+        cscd_mesh_triangle(u->recording.mesh, t, corners);
+        for (int i = 0; i < 3; i++)
+            if (u->weights == NULL ? corners[i] < own : isfinite(u->weights[corners[i]])) mobile[part] = true;
+    }
+    return mobile;
+}
+
+static bool may_move(const untangle_state *u, const bool *mobile, uint32_t part) {
+    const uint32_t count = u->ignored.parts.count;
+    return mobile[part < count ? part : count];
+}
+
+static left_reason reason_of(const untangle_state *u, const untangled_frame *frame,
+                             const cscd_part_pair *pair, const bool *mobile) {
+    if (!may_move(u, mobile, pair->a) && !may_move(u, mobile, pair->b)) return LEFT_IMMOBILE;
+    if (frame->found.stopped) return interrupted() ? LEFT_STOPPED : LEFT_TIME;
+    return pair->crossing + pair->folded > 0 ? LEFT_NO_WAY : LEFT_FLUSH;
+}
+
+static bool list_left(untangle_state *u, untangled_frame *frame, const cscd_part_pairs *parts,
+                      io_error *error) {
+    bool *mobile = find_mobile(u);
+    frame->left = malloc((parts->count + 1) * sizeof *frame->left);
+    if (mobile == NULL || frame->left == NULL) {
+        free(mobile);
+        return io_fail(error, "out of memory");
+    }
+    for (size_t i = 0; i < parts->count; i++) {
+        const cscd_part_pair *pair = &parts->items[i];
+        const size_t pairs =
+            pair->crossing + pair->coplanar + pair->folded + pair->touching + pair->duplicate;
+        if (pairs > 0)
+            frame->left[frame->left_count++] =
+                (left_pairs){pair->a, pair->b, pairs, reason_of(u, frame, pair, mobile)};
+    }
+    free(mobile);
+    qsort(frame->left, frame->left_count, sizeof *frame->left, compare_left);
+    return true;
+}
+
 /* The pairs that are left, by parts; none are known where they do not fit the memory. */
 static bool find_left(untangle_state *u, untangled_frame *frame, io_error *error) {
     cscd_intersection_options options = cscd_intersection_defaults();
@@ -287,17 +339,7 @@ static bool find_left(untangle_state *u, untangled_frame *frame, io_error *error
     const cscd_status status = cscd_detector_find_intersections(
         u->detector, CSCD_DOUBLES(u->result, vertex_count_of(u)), &options, &found);
     if (status != CSCD_OK && status != CSCD_LIST_TOO_LONG) return api_failed(u, error);
-    if (status != CSCD_OK || found.parts == NULL) return true;
-    frame->left = malloc((found.parts->count + 1) * sizeof *frame->left);
-    if (frame->left == NULL) return io_fail(error, "out of memory");
-    for (size_t i = 0; i < found.parts->count; i++) {
-        const cscd_part_pair *pair = &found.parts->items[i];
-        const size_t pairs =
-            pair->crossing + pair->coplanar + pair->folded + pair->touching + pair->duplicate;
-        if (pairs > 0) frame->left[frame->left_count++] = (left_pairs){pair->a, pair->b, pairs};
-    }
-    qsort(frame->left, frame->left_count, sizeof *frame->left, compare_left);
-    return true;
+    return status != CSCD_OK || found.parts == NULL || list_left(u, frame, found.parts, error);
 }
 
 /* Most programs read the numbers of a text as floats. */
@@ -327,6 +369,7 @@ static bool take_result(untangle_state *u, uint32_t i, const cscd_untangled *fou
     *frame = (untangled_frame){.done = true, .found = *found};
     if (first || i < a->first) a->first = i;
     if (first || i >= a->end) a->end = i + 1;
+    untangle_pages_add(&u->pages, i, u->positions, u->result);
     return found->clean ? look_as_floats(u, frame, error) : find_left(u, frame, error);
 }
 
@@ -426,6 +469,12 @@ static bool write_json(untangle_state *u, io_error *error) {
     return output_file_close(&u->json_file, OUTPUT_WHOLE) || io_fail_write(error, u->options->json_path);
 }
 
+/* Without a frame that is done there is none. */
+static bool write_report(untangle_state *u, io_error *error) {
+    if (u->pages.path == NULL || u->answer.end == u->answer.first) return true;
+    return untangle_pages_write(&u->pages, &u->answer, u->detector, error);
+}
+
 static void tell_what_was_written(const untangle_state *u) {
     const untangle_answer *a = &u->answer;
     const char *path = u->options->output_path;
@@ -444,7 +493,7 @@ static void tell_what_was_written(const untangle_state *u) {
 
 static void tell_interrupt(const untangle_state *u) {
     const untangle_answer *a = &u->answer;
-    const char *const paths[] = {a->written, u->options->json_path};
+    const char *const paths[] = {a->written, u->options->json_path, u->pages.path};
     interrupt_tell(&(interrupt_kept){.done = a->end - a->first,
                                      .whole = a->count,
                                      .what = "frames",
@@ -464,7 +513,8 @@ static int end_run(untangle_state *u, bool ran, const io_error *failure) {
     }
     const bool closed = close_output(u, &error);
     if (closed) tell_what_was_written(u);
-    const bool written = write_json(u, closed ? &error : NULL) && closed;
+    const bool shown = closed && write_report(u, &error);
+    const bool written = write_json(u, shown ? &error : NULL) && shown;
     if (!ran) return fail_input("%s", failure->text);
     if (!written) return fail_input("%s", error.text);
     if (interrupted()) {
@@ -479,6 +529,7 @@ static void free_run(untangle_state *u) {
     untangle_output_close(&u->output, 0, 0, NULL);
     for (uint32_t i = 0; u->answer.frames != NULL && i < u->answer.count; i++) free(u->answer.frames[i].left);
     free(u->answer.frames);
+    untangle_pages_close(&u->pages);
     cscd_detector_destroy(u->detector);
     ignore_pairs_free(&u->ignored);
     recording_close(&u->recording);

@@ -18,7 +18,7 @@
 typedef struct untangle_options {
     recording_options source;
     frame_range frames;
-    const char *output_path, *json_path;
+    const char *output_path, *json_path, *report_path;
     length_given gap, spread;
     length_unit unit;       /* its name is NULL: what the files say */
     part_pairs_list pinned; /* each a list of names */
@@ -66,10 +66,21 @@ bool untangle_output_close(untangle_output *out, uint32_t first, uint32_t count,
 
 /* ---- answers ------------------------------------------------------------------------------------------- */
 
+/* Why pairs are left. */
+typedef enum left_reason {
+    LEFT_NO_WAY,   /* no way out of each other was found */
+    LEFT_FLUSH,    /* the same, and they lie on each other only: none of them crosses */
+    LEFT_TIME,     /* the time was up */
+    LEFT_STOPPED,  /* the run was interrupted */
+    LEFT_IMMOBILE, /* neither of the two may move */
+    LEFT_REASONS
+} left_reason;
+
 /* Pairs of triangles of two parts that are left in a frame. */
 typedef struct left_pairs {
     uint32_t a, b; /* parts */
     size_t pairs;
+    left_reason reason;
 } left_pairs;
 
 /* What has become of a frame. */
@@ -101,3 +112,25 @@ bool untangle_answer_clean(const untangle_answer *a);
 void untangle_answer_print(const untangle_answer *a);
 
 void untangle_answer_write_json(const untangle_answer *a, json *out);
+
+/* ---- the page ------------------------------------------------------------------------------------------- */
+
+/* The frames that the report draws: as many as it has room for. Zeroed: there is no report. */
+typedef struct untangle_pages {
+    const char *path;
+    uint32_t frame_count, vertex_count, stride, place_count;
+    double *before, *after; /* of each place */
+    int32_t *numbers;       /* of frames that are drawn */
+} untangle_pages;
+
+/* path: NULL for no report. On false untangle_pages_close is due. */
+bool untangle_pages_open(const char *path, uint32_t frame_count, uint32_t vertex_count, untangle_pages *out,
+                         io_error *error);
+void untangle_pages_close(untangle_pages *pages); /* a zeroed struct is fine */
+
+/* The i-th frame of those chosen, in any order. */
+void untangle_pages_add(untangle_pages *pages, uint32_t i, const double *before, const double *after);
+
+/* Writes the page of the frames that are done. */
+bool untangle_pages_write(untangle_pages *pages, const untangle_answer *answer, cscd_detector *detector,
+                          io_error *error);

@@ -7,6 +7,7 @@ import { createHelp, listenToKeys } from './controls/keys.js';
 import { createPlayer } from './controls/player.js';
 import { createStore } from './controls/store.js';
 import { followTheme, initialTheme } from './controls/theme.js';
+import { createShare } from './controls/share.js';
 import { createTransport } from './controls/transport.js';
 import { readReport } from './data/report.js';
 import { titleOf } from './page/names.js';
@@ -39,15 +40,23 @@ function showError(error) {
   document.body.prepend(message);
 }
 
+/** The frame to begin with: where vertices moved farthest, of what was untangled. */
+function firstFrame({ scene, untangled }) {
+  if (untangled === null) return scene.first;
+  const kept = untangled.frames.filter(({ frame }) => scene.numbers.includes(frame));
+  return kept.reduce((most, one) => (one.displacement > most.displacement ? one : most)).frame;
+}
+
 function initialState(report) {
   const { scene } = report;
   const planShown = report.kind === 'preprocess' && scene.region !== null; // there is nothing else to see
   return {
-    time: scene === null ? 0 : (frameInAddress(scene) ?? scene.first),
+    time: scene === null ? 0 : (frameInAddress(scene) ?? firstFrame(report)),
+    share: 0,
     playing: false,
     speed: report.scene?.fps ?? 30,
     loop: false,
-    colour: planShown ? 'region' : 'plain',
+    colour: planShown ? 'region' : report.untangled !== null ? 'displacement' : 'plain',
     answers: true,
     event: null,
     contacts: true,
@@ -89,8 +98,9 @@ async function createScene(report, store, player) {
   const quick = scene.frames.length * scene.vertexCount * 12 < QUICK_BYTES;
   if (quick) await Promise.all([scene.positions.readAll(), scene.scenery?.positions.readAll()]);
   const viewer = createView(byId('view'), report, store, player);
+  if (scene.displacement !== null) createShare(byId('playback'), store);
   if (scene.last > scene.first) createTransport(byId('playback'), report, store, player);
-  createChoices(byId('choices'), scene, viewer !== null, store, report.kind !== 'replay');
+  createChoices(byId('choices'), scene, viewer !== null, store, report.kind === 'preprocess');
   return viewer;
 }
 

@@ -9,9 +9,11 @@ export const COLOURS = [
   { value: 'region', name: 'Region', array: 'region', method: true },
   { value: 'orientation', name: 'Orientation', array: 'orientation', method: true },
   { value: 'heat', name: 'Contact heat', array: 'heat' },
+  { value: 'displacement', name: 'Displacement', array: 'displacement' },
 ];
 
 const TRAIL = 'Contacts of the 8 intervals before, fading';
+const THROUGH_BOTH = 'What intersects where the surface hides it, faintly';
 const THROUGH = 'Contacts that the surface hides, faintly';
 const NO_VIEW = 'The 3D view, where this would show, cannot be drawn: the browser offers no WebGL';
 const NO_PLAN = 'The recording was searched without regions, so the report has none';
@@ -21,11 +23,23 @@ const REASONS = {
   region: NO_PLAN,
   orientation: 'The report has no orientations: the method has none, or the recording is too long to keep them',
   heat: 'The report has no contacts: nothing was replayed',
+  displacement: 'The report does not show it before and after',
 };
 
 const NO_ANSWERS = 'The frames of this report were not checked';
 
+/** Where it is shown before and after, nothing else was looked for. */
+function marksOfPair(scene) {
+  const missing = scene.answers === null ? NO_ANSWERS : null;
+  return [
+    { key: 'answers', name: 'Intersections', letter: 'I', missing },
+    { key: 'through', name: 'Through the surface', letter: 'X', missing, title: THROUGH_BOTH },
+    { key: 'edges', name: 'Edges', letter: 'E', missing: null },
+  ];
+}
+
 function marksOfScene(scene) {
+  if (scene.displacement !== null) return marksOfPair(scene);
   const noContacts = scene.contacts === null ? REASONS.heat : null;
   const noPoints = scene.detectorPoints === null && scene.plan === null ? NO_PLAN : null;
   return [
@@ -145,10 +159,12 @@ function methodChoices(scene, drawn, store, open) {
  */
 export function createChoices(container, scene, drawn, store, open) {
   const common = ({ method }) => !method;
+  const paired = scene.displacement !== null;
+  const colours = ({ method, value }) => (paired ? ['plain', 'displacement'].includes(value) : !method && value !== 'displacement');
   container.append(
-    colourChoices(scene, drawn, store, 'Colour by', common),
+    colourChoices(scene, drawn, store, 'Colour by', colours),
     markChoices(scene, drawn, store, 'Show', common),
     upSelect(drawn, store),
-    methodChoices(scene, drawn, store, open),
+    ...(paired ? [] : [methodChoices(scene, drawn, store, open)]),
   );
 }

@@ -2,7 +2,8 @@
 
 import { COLOURS, colourMissing, marksOf } from './choices.js';
 import { element } from '../page/dom.js';
-import { zoomToContacts } from '../view/framing.js';
+import { toggleShare } from './share.js';
+import { zoomToContacts, zoomToMoves } from '../view/framing.js';
 
 const HELP = [
   ['Space', 'Play or pause'],
@@ -12,10 +13,11 @@ const HELP = [
   ['M', 'Frame with most contacts'],
   ['N P', 'Next, previous event'],
   ['+ −', 'Faster, slower'],
-  ['1 … 6', 'Colour by: plain, charge, equalized charge, region, orientation, contact heat'],
+  ['1 … 7', 'Colour by: plain, charge, equalized charge, region, orientation, contact heat, displacement'],
+  ['A', 'Before or after, of what was untangled'],
   ['I C T X', 'Intersections, contacts, trail, through the surface'],
   ['D R E B', 'Detector points, region cuts, edges, surroundings'],
-  ['Z', 'Zoom to the contacts of this interval'],
+  ['Z', 'Zoom to the contacts of this interval, or to where vertices moved'],
   ['0', 'Reset the view'],
   ['S', 'Save the view as a picture'],
   ['L', 'Light or dark'],
@@ -94,10 +96,11 @@ function playbackKeys(player) {
 function sceneKeys(scene, store, viewer) {
   const actions = {
     0: () => viewer?.home(),
-    z: () => viewer && zoomToContacts(viewer),
+    z: () => viewer && (scene.displacement === null ? zoomToContacts : zoomToMoves)(viewer),
     s: () => viewer?.savePicture(),
     Escape: () => store.set({ selected: null, triangle: null }),
   };
+  if (scene.displacement !== null) actions.a = () => toggleShare(store);
   COLOURS.forEach((colour, i) => {
     if (colourMissing(scene, viewer !== null, colour) !== null) return;
     actions[String(i + 1)] = () => store.set({ colour: colour.value });

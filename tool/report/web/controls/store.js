@@ -6,7 +6,8 @@
  * @property {boolean} playing
  * @property {number} speed frames a second
  * @property {boolean} loop
- * @property {'plain'|'charge'|'equalized'|'region'|'orientation'|'heat'} colour
+ * @property {'plain'|'charge'|'equalized'|'region'|'orientation'|'heat'|'displacement'} colour
+ * @property {number} share of the way from before, 0, to after, 1, on pages that have both
  * @property {boolean} answers fill what intersects, and draw the curves
  * @property {number|null} event the number of the event last gone to
  * @property {boolean} contacts mark the contacts of the interval

@@ -103,10 +103,11 @@ function clock(store, player) {
 
 export function createTransport(container, report, store, player) {
   const buttons = stepButtons(store, player);
-  const track = element('div', { class: 'scrub' });
-  track.append(createBand(report, store, player), slider(store, player));
+  const looked = report.untangled === null; // for contacts and states, which strip and buttons are about
+  const track = element('div', { class: looked ? 'scrub' : 'scrub bare' });
+  track.append(...(looked ? [createBand(report, store, player)] : []), slider(store, player));
   const row = element('div', { class: 'row' });
-  row.append(...buttons.before, playButton(store, player), ...buttons.after, ...buttons.contacts);
+  row.append(...buttons.before, playButton(store, player), ...buttons.after, ...(looked ? buttons.contacts : []));
   row.append(clock(store, player), element('span', { class: 'spacer' }), speedSelect(store, player), loopBox(store));
   container.append(track, row);
 }

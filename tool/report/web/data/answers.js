@@ -32,8 +32,8 @@ function checkBounds(values, bound, name) {
 const NAMES = ['answer_frame', 'answer_counts', 'answer_triangle', 'answer_kind', 'curve_vertices', 'curve_share',
   'curve_begins', 'depth_vertex', 'depth'];
 
-/** null where frames were not checked. */
-export function answersOf(array, scene) {
+/** null where frames were not checked. @param {boolean} paired each frame is there before and after */
+export function answersOf(array, scene, paired) {
   if (!scene.answers) return null;
   const arrays = Object.fromEntries(NAMES.map((name) => [name, array(name)]));
   for (const name of NAMES) if (arrays[name] === null) throw new BlockError(name, 'is missing');
@@ -41,7 +41,9 @@ export function answersOf(array, scene) {
   const counts = arrays.answer_counts;
   const offsets = offsetsOf(counts, places.length);
   checkLengths(arrays, offsets[places.length]);
-  checkBounds(places, scene.numbers.length, 'answer_frame');
+  const sides = paired ? 2 : 1;
+  const numberOf = (place) => scene.numbers[Math.floor(place / sides)];
+  checkBounds(places, sides * scene.numbers.length, 'answer_frame');
   checkBounds(arrays.answer_triangle, scene.triangles, 'answer_triangle');
   checkBounds(arrays.curve_vertices, scene.vertices, 'curve_vertices');
   checkBounds(arrays.depth_vertex, scene.vertices, 'depth_vertex');
@@ -61,19 +63,22 @@ export function answersOf(array, scene) {
     ...scene.answers,
     events: (scene.answers.events ?? []).map((event) => ({ ...event, deep: lengthText(event.depth, scene.length_unit ?? null) })),
     /** The numbers of the frames in which triangles cross. */
-    crossingFrames: places.filter((_, i) => counts[COUNTS * i] > 0).map((p) => scene.numbers[p]),
-    touchingFrames: places.filter((_, i) => counts[COUNTS * i + 1] > 0).map((p) => scene.numbers[p]),
+    crossingFrames: places.filter((_, i) => counts[COUNTS * i] > 0).map(numberOf),
+    touchingFrames: places.filter((_, i) => counts[COUNTS * i + 1] > 0).map(numberOf),
     deepest: arrays.depth.reduce((most, depth) => Math.max(most, depth), 0),
     /** What was found in the frame that is nearest to a time, as `place` says; null: nothing. */
     at(place) {
       const i = lastAtOrBefore(places, place);
       return i >= 0 && places[i] === place ? frame(i) : null;
     },
+    /** The number of the frame of a place. */
+    numberOf,
     /** The place of the frame nearest to a time: what intersects is known of frames, and not in between. */
-    placeOf(time) {
+    placeOf({ time, share }) {
       const { numbers } = scene;
       const i = Math.max(0, lastAtOrBefore(numbers, time));
-      return i + 1 < numbers.length && numbers[i + 1] - time < time - numbers[i] ? i + 1 : i;
+      const nearest = i + 1 < numbers.length && numbers[i + 1] - time < time - numbers[i] ? i + 1 : i;
+      return sides * nearest + (paired && share >= 0.5 ? 1 : 0);
     },
   };
 }

@@ -194,3 +194,62 @@ export class FrameStore {
     return a.map((value, axis) => value + fraction * (b[axis] - value));
   }
 }
+
+const AT_REST = 2 ** -18; // of the longest side: below a step of the grid, and above what float32 rounds
+
+const mixed = (a, b, share) => a.map((value, i) => value + share * (b[i] - value));
+
+/** Positions before and after, two records a frame; what is shown lies `share` of the way from one to the other. */
+export class PairedFrames extends FrameStore {
+  constructor(...given) {
+    super(...given);
+    this.share = 0;
+    this.mixtures = new Map();
+    this.distances = new Map();
+  }
+
+  readNext() {
+    const number = this.records.length;
+    const [before, after] = [0, 1].map((side) => this.reader.next(2 * number + side));
+    this.records.push({ number, before, after });
+  }
+
+  setShare(share) {
+    if (share === this.share) return;
+    this.share = share;
+    this.mixtures.clear();
+  }
+
+  mix({ number, before, after }) {
+    const { share } = this;
+    if (share === 0 || share === 1) return { number: `${number} ${share}`, ...(share === 0 ? before : after) };
+    const parts = ['center', 'half', 'local'].map((name) => [name, mixed(before[name], after[name], share)]);
+    return { number: `${number} ${share}`, ...Object.fromEntries(parts) };
+  }
+
+  record(i) {
+    const pair = super.record(i);
+    if (!this.mixtures.has(pair.number)) {
+      if (this.mixtures.size >= 4) this.mixtures.clear();
+      this.mixtures.set(pair.number, this.mix(pair));
+    }
+    return this.mixtures.get(pair.number);
+  }
+
+  /** How far each vertex moved. @returns {Float32Array} */
+  moves(i) {
+    const { number, before, after } = super.record(i);
+    if (this.distances.has(number)) return this.distances.get(number);
+    const shift = after.center.map((value, axis) => value - before.center[axis]);
+    const least = AT_REST * 2 * Math.max(...before.half);
+    const found = new Float32Array(this.vertexCount);
+    for (let v = 0; v < found.length; v++) {
+      const along = shift.map((value, axis) => value + after.local[3 * v + axis] - before.local[3 * v + axis]);
+      const distance = Math.hypot(...along);
+      found[v] = distance > least ? distance : 0;
+    }
+    if (this.distances.size >= 4) this.distances.clear();
+    this.distances.set(number, found);
+    return found;
+  }
+}

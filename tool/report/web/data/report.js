@@ -2,7 +2,7 @@
 
 import { answersOf } from './answers.js';
 import { BlockError, readArray, readDocument } from './decode.js';
-import { FrameStore } from './frames.js';
+import { FrameStore, PairedFrames } from './frames.js';
 import { readTables } from './tables.js';
 import { lastAtOrBefore } from '../page/intervals.js';
 
@@ -141,13 +141,30 @@ function numbersOf({ numbers, first, last }) {
   return found;
 }
 
-async function sceneOf(told) {
+/** How far vertices have moved, of pages that show it before and after. */
+function displacementOf(positions, untangled, unit) {
+  if (untangled === null) return null;
+  return {
+    /** The greatest of all frames, in the page's unit. */
+    most: untangled.frames.reduce((most, frame) => Math.max(most, frame.displacement), 0) / unit,
+    /** The kept frame that is nearest to a time. */
+    placeOf(time) {
+      const { i, fraction } = positions.locate(time);
+      return fraction >= 0.5 ? i + 1 : i;
+    },
+    /** Of each vertex, at such a place. */
+    at: (place) => positions.moves(place),
+  };
+}
+
+async function sceneOf(told, untangled) {
   const scene = { ...told, numbers: numbersOf(told) };
   const array = await readArrays(scene.arrays);
   const triangles = required(array('triangles'), 'triangles');
   ofLength(triangles, 3 * scene.triangles, 'triangles');
   below(triangles, scene.vertices, 'triangles');
-  const positions = new FrameStore(required(array('frames'), 'frames'), scene.vertices, scene.frames, 'frames');
+  const Frames = untangled === null ? FrameStore : PairedFrames;
+  const positions = new Frames(required(array('frames'), 'frames'), scene.vertices, scene.frames, 'frames');
   return {
     vertexCount: scene.vertices,
     triangleCount: scene.triangles,
@@ -171,7 +188,8 @@ async function sceneOf(told) {
     orientation: orientationOf(array('orientation'), scene),
     detectorPoints: detectorPointsOf(array('detector_points'), scene),
     contacts: contactsOf(array, scene),
-    answers: answersOf(array, scene),
+    answers: answersOf(array, scene, untangled !== null),
+    displacement: displacementOf(positions, untangled, scene.unit ?? 1), // null: there is no before and after
   };
 }
 
@@ -185,6 +203,7 @@ export async function readReport() {
     generator: content.generator,
     summaries: content.summaries,
     preprocess: content.preprocess,
-    scene: content.scene === null ? null : await sceneOf(content.scene),
+    untangled: content.untangled ?? null,
+    scene: content.scene === null ? null : await sceneOf(content.scene, content.untangled ?? null),
   };
 }

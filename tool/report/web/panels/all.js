@@ -13,10 +13,12 @@ import * as provenance from './provenance.js';
 import * as regions from './regions.js';
 import * as status from './status.js';
 import * as timings from './timings.js';
+import * as untangled from './untangled.js';
 
 const PANELS = {
   status,
   answer,
+  untangled,
   notes,
   changes,
   comparison,
@@ -49,7 +51,8 @@ function createPanel(panel, container, report, store, player) {
 export function createPanels(report, store, player) {
   document.body.dataset.kind = report.kind;
   const method = document.getElementById('method');
-  method.open = report.kind !== 'replay'; // whose answer is above
+  method.open = report.kind !== 'replay' && report.untangled === null; // whose answer is above
+  if (report.untangled !== null) method.querySelector('summary').textContent = 'Provenance and licences';
   window.addEventListener('beforeprint', () => {
     method.open = true;
   });

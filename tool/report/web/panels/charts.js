@@ -64,7 +64,7 @@ export function create(container, report, store, player) {
   const extent = extentOf(report);
   const { numbers } = extent;
   const count = intervalCount(extent);
-  container.hidden = report.kind === 'preprocess' || count < 1;
+  container.hidden = report.kind === 'preprocess' || report.untangled !== null || count < 1;
   if (container.hidden) return;
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));

@@ -59,6 +59,13 @@ function cappedIntervals(scene, intervals) {
     .map(({ frame }) => frame);
 }
 
+/** Of long recordings every so many frames are drawn, and the table has all. */
+function notesOfUntangled({ scene, untangled }) {
+  if (untangled === null || scene.numbers.length === untangled.frames.length) return [];
+  const drawn = `${integer(scene.numbers.length)} of ${integer(untangled.frames.length)}`;
+  return [['', 'not every frame is drawn', `${drawn} are, with straight lines between them. The table is of every frame.`]];
+}
+
 function notesOfScene(scene, intervals) {
   const notes = [];
   const all = scene.numbers.length;
@@ -99,5 +106,5 @@ export function create(container, report) {
   });
   if (!report.scene) return;
   const intervals = report.summaries[0]?.summary.intervals ?? [];
-  for (const note of notesOfScene(report.scene, intervals)) show(container, note, '');
+  for (const note of [...notesOfUntangled(report), ...notesOfScene(report.scene, intervals)]) show(container, note, '');
 }

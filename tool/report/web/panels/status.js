@@ -13,7 +13,8 @@ function ofStill(report) {
 }
 
 export function create(container, report, store) {
-  if (report.kind !== 'replay') {
+  const still = report.kind !== 'replay' && report.untangled === null;
+  if (still || (report.untangled !== null && report.scene.last === report.scene.first)) {
     container.textContent = ofStill(report);
     return;
   }

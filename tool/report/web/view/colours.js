@@ -1,6 +1,6 @@
 /** Colours of triangles and marks: maps for values, hues for categories, all told apart with any colour vision. */
 
-import { interpolateInferno, interpolateRdPu, interpolateViridis } from 'd3-scale-chromatic';
+import { interpolateInferno, interpolateRdPu, interpolateViridis, interpolateYlGnBu } from 'd3-scale-chromatic';
 
 export const VF = [0, 90, 181];
 export const EE = [220, 50, 32];
@@ -60,6 +60,11 @@ export const HEAT = table((t) => interpolateInferno(0.22 + 0.72 * t));
 
 /** Depths: from a pink that differs from the body to the darkest purple. */
 export const DEPTH = table((t) => interpolateRdPu(0.4 + 0.6 * t));
+
+const FAINT = 0.2;
+const towards = (from, to, share) => from.map((value, k) => Math.round(value + share * (to[k] - value)));
+/** Displacements: from the colour of what has not moved to dark blue. */
+export const DISPLACEMENT = table((t) => css(towards(PLAIN, numbers(interpolateYlGnBu(0.25 + 0.75 * t)), Math.min(1, t / FAINT))));
 
 export const step = (t) => 3 * Math.round(255 * Math.min(1, Math.max(0, t)));
 

@@ -19,6 +19,27 @@ export function zoomToEvent(viewer, event) {
   viewer.frameFromOutside(box, away > 1e-3 ? outwards.normalize() : new Vector3());
 }
 
+const FAR = 0.5; // of the farthest
+
+/** Goes to where vertices moved far, in the frame shown. */
+export function zoomToMoves(viewer) {
+  const { data, reach, space, store } = viewer;
+  viewer.update(store.get());
+  const place = data.displacement.placeOf(store.get().time);
+  const moves = data.displacement.at(place);
+  const most = moves.reduce((far, distance) => Math.max(far, distance), 0);
+  if (most === 0) return;
+  const box = new Box3();
+  moves.forEach((distance, vertex) => {
+    if (distance < FAR * most) return;
+    box.expandByPoint(new Vector3(...space.toView(data.positions.vertexAt(vertex, store.get().time))));
+  });
+  const size = Math.max(...reach.getSize(new Vector3()).toArray());
+  const outwards = box.getCenter(new Vector3()).sub(viewer.bodyPlace());
+  const away = outwards.length() / size;
+  viewer.frameFromOutside(box.expandByScalar(AROUND * size), away > 1e-3 ? outwards.normalize() : new Vector3());
+}
+
 /** Frames the contacts of the interval, or the selected one and its triangles. */
 export function zoomToContacts(viewer) {
   const { data, painter, space, store } = viewer;

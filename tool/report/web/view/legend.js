@@ -5,7 +5,7 @@ import { element, swatch } from '../page/dom.js';
 import { counted, integer, percent, significant } from '../page/format.js';
 import { finder, intervalAt } from '../page/intervals.js';
 import {
-  DEPTH, HEAT, INTERSECTING, ONLY_TOUCHING, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour,
+  DEPTH, DISPLACEMENT, HEAT, INTERSECTING, ONLY_TOUCHING, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour,
 } from './colours.js';
 
 const MANY = 8;
@@ -106,16 +106,34 @@ function marksLegend(scene, state, find) {
   return rows.length > 0 ? [items(...rows)] : [];
 }
 
+/** "in frame 12", or "before in frame 12" where a page shows both. */
+function whenOf(scene, state) {
+  const frame = `in frame ${scene.answers.numberOf(scene.answers.placeOf(state))}`;
+  if (scene.displacement === null) return frame;
+  const side = state.share < 0.5 ? 'before' : 'after';
+  return scene.numbers.length > 1 ? `${side} ${frame}` : side;
+}
+
+function displacementLegend({ displacement, lengthUnit, unit }) {
+  if (displacement.most === 0) return [title('No vertex moved')];
+  const most = displacement.most * unit;
+  return [
+    title(`How far vertices moved, in ${lengthUnit ?? 'the unit of the file'}`),
+    bar(DISPLACEMENT),
+    ends('0', short(most / 2), short(most)),
+  ];
+}
+
 /** What the fills of the frame mean, with the depths in the file's unit. */
 function answersLegend(scene, state) {
   const { answers: all, unit } = scene;
-  const found = state.answers && all !== null ? all.at(all.placeOf(state.time)) : null;
+  const found = state.answers && all !== null ? all.at(all.placeOf(state)) : null;
   if (found === null) return [];
   const rows = [];
   if (found.crossing > 0) rows.push(item(swatch(css(INTERSECTING)), `intersecting: ${counted(found.crossing, 'pair')} of triangles`));
   if (found.touching > 0) rows.push(item(swatch(css(ONLY_TOUCHING)), `touching: ${counted(found.touching, 'pair')}`));
   if (found.curveShares.length > 0) rows.push(item(element('span', { class: 'mark-curve', 'aria-hidden': 'true' }), 'intersection curves'));
-  const parts = [title(`What intersects in frame ${scene.numbers[all.placeOf(state.time)]}`), items(...rows)];
+  const parts = [title(`What intersects ${whenOf(scene, state)}`), items(...rows)];
   if (found.depths.length === 0) return parts;
   return [
     ...parts,
@@ -135,6 +153,8 @@ function colourLegend(scene, state, painter) {
       return regionLegend(scene.plan);
     case 'orientation':
       return orientationLegend(scene, state.time);
+    case 'displacement':
+      return displacementLegend(scene);
     case 'heat':
       return heatLegend(painter.mostHeat, scene.contactsInfo);
     default:
@@ -153,7 +173,7 @@ export function createLegend(container, report, store, painter) {
   container.append(box);
   let shown = null;
   const show = (state) => {
-    const frame = scene.answers === null ? '' : scene.answers.placeOf(state.time);
+    const frame = scene.answers === null ? '' : scene.answers.placeOf(state);
     const key = [state.colour, state.contacts, state.answers, frame, intervalAt(state.time, scene)].join(' ');
     if (key === shown) return;
     shown = key;
@@ -161,6 +181,6 @@ export function createLegend(container, report, store, painter) {
     body.replaceChildren(...parts);
     box.hidden = parts.length === 0;
   };
-  onCalmly(store, ['time', 'colour', 'contacts', 'answers'], show);
+  onCalmly(store, ['time', 'share', 'colour', 'contacts', 'answers'], show);
   show(store.get());
 }

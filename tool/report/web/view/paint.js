@@ -2,7 +2,7 @@
 
 import { intervalAt } from '../page/intervals.js';
 import {
-  DEPTH, HEAT, INTERSECTING, ONLY_TOUCHING, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step,
+  DEPTH, DISPLACEMENT, HEAT, INTERSECTING, ONLY_TOUCHING, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step,
 } from './colours.js';
 import { CUT, CUT_CORNER, PICKED, TOUCHES } from './shading.js';
 import { around, contactTriangles, cutEdges, trianglesOfVertices } from './topology.js';
@@ -59,10 +59,20 @@ export class Painter {
     } else if (colour === 'orientation') {
       const orientation = scene.orientation.at(intervalAt(time, scene));
       this.fillFromTable(ORIENTATIONS, (t) => orientation[t]);
+    } else if (colour === 'displacement') {
+      this.fillDisplacement(scene.displacement.at(scene.displacement.placeOf(time)));
     } else {
       this.fillFromTable([PLAIN], () => 0);
       if (colour === 'heat') this.addHeat();
     }
+  }
+
+  /** Each triangle by the mean of its corners. */
+  fillDisplacement(moves) {
+    const { triangles, displacement } = this.scene;
+    const scale = displacement.most > 0 ? 1 / (3 * displacement.most) : 0;
+    const sum = (t) => moves[triangles[3 * t]] + moves[triangles[3 * t + 1]] + moves[triangles[3 * t + 2]];
+    this.fillFromMap(DISPLACEMENT, (t) => scale * sum(t));
   }
 
   addHeat() {
@@ -95,10 +105,10 @@ export class Painter {
   }
 
   /** Fills what intersects, and what is buried by how deep it is. */
-  fillAnswers({ answers, time }) {
+  fillAnswers(state) {
     const { scene, deep, rgb } = this;
     const { answers: all } = scene;
-    const found = answers && all !== null ? all.at(all.placeOf(time)) : null;
+    const found = state.answers && all !== null ? all.at(all.placeOf(state)) : null;
     this.filled = [];
     if (found === null) return;
     found.triangles.forEach((t, i) => {
@@ -150,8 +160,9 @@ export class Painter {
     const moving = state.colour === 'orientation' || (state.contacts && scene.contacts !== null);
     const interval = moving ? intervalAt(state.time, scene) : '';
     const { answers } = scene;
-    const found = state.answers && answers !== null ? answers.placeOf(state.time) : '';
-    return [found, state.colour, state.contacts, state.cuts, state.selected, state.triangle, interval].join(' ');
+    const found = state.answers && answers !== null ? answers.placeOf(state) : '';
+    const moves = state.colour === 'displacement' ? scene.displacement.placeOf(state.time) : '';
+    return [found, moves, state.colour, state.contacts, state.cuts, state.selected, state.triangle, interval].join(' ');
   }
 
   /** @returns {boolean} whether some triangle has lines */

@@ -3,7 +3,7 @@
 import { button, element } from '../page/dom.js';
 import { moment } from '../page/format.js';
 import { intervalAt } from '../page/intervals.js';
-import { zoomToContacts } from './framing.js';
+import { zoomToContacts, zoomToMoves } from './framing.js';
 import { createLegend } from './legend.js';
 import { createReadout } from './readout.js';
 import { Viewer } from './viewer.js';
@@ -49,6 +49,9 @@ function tools(viewer, store) {
   const { data } = viewer;
   const reset = button('Reset view', { glyph: HOUSE, key: '0' }, () => viewer.home());
   const row = element('div', { class: 'view-tools' }, reset);
+  if (data.displacement !== null) {
+    row.append(button('Zoom to where vertices moved', { glyph: LOUPE, key: 'Z' }, () => zoomToMoves(viewer)));
+  }
   if (data.contacts !== null) {
     const zoom = button('Zoom to contacts', { glyph: LOUPE, key: 'Z' }, () => zoomToContacts(viewer));
     const update = (state) => {

@@ -85,7 +85,7 @@ export class Viewer {
         before?.();
         this.invalidate();
       });
-    redraw(['time'], () => this.resolution.moving());
+    redraw(['time', 'share'], () => this.resolution.moving());
     redraw(['colour', 'answers', 'contacts', 'trail', 'through', 'points', 'cuts', 'edges', 'scenery', 'selected', 'triangle']);
     this.store.on(['event'], ({ event }) => {
       if (event === null) return;
@@ -195,6 +195,7 @@ export class Viewer {
   /** Brings what is in the scene to the state. */
   update(state) {
     const { body, scenery, space, view } = this;
+    if (this.data.displacement !== null) this.data.positions.setShare(state.share);
     body.setTime(state.time);
     space.place(body);
     if (scenery !== null) {
@@ -234,7 +235,7 @@ export class Viewer {
 
   updateCurves(state) {
     const { answers } = this.data;
-    const place = answers === null ? -1 : answers.placeOf(state.time);
+    const place = answers === null ? -1 : answers.placeOf(state);
     const found = answers !== null && state.answers ? answers.at(place) : null;
     const { record, fraction } = this.body.shown;
     const key = found === null ? 'none' : `${place} ${record?.number} ${fraction}`;
