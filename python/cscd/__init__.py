@@ -14,6 +14,7 @@ from .energy import Energy, EnergySum
 from .errors import Cancelled, Error, InContact, ListTooLong
 from .files import FrameSequence, Recording, read, write_report
 from .intersections import Curve, Intersections, PartPairs
+from .lenses import LENS_REASONS, Lenses, Patches
 from .line_search import LineSearch
 from .measures import Measures, TetSurface, tet_surface
 from .mesh import HalfSpace, Mesh, Points, Scene, Wires
@@ -29,8 +30,9 @@ __version__: str = _library.cscd_version_string().decode()
 
 __all__ = ["CONTACT_KINDS", "Cancelled", "ComparedPlan", "Contacts", "Curve", "Detector", "Energy", "EnergySum",
            "Error", "Events", "Frame", "FrameSequence", "HalfSpace", "INTERSECTION_KINDS", "InContact",
-           "Intersections", "LineSearch", "ListTooLong", "Measures", "Mesh", "PairContacts", "PairDistances",
-           "PartPairs", "Plan", "Points", "Proximities", "RESPONSES", "Recording", "Replay", "SafeMotion", "Scene",
-           "TetSurface", "UNTANGLE_STARTS", "Untangled", "Wires", "__version__", "contacts", "intersections",
-           "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay", "self_intersecting_faces",
-           "self_intersections", "tet_surface", "untangle", "untangle_frames", "write_report"]
+           "Intersections", "LENS_REASONS", "Lenses", "LineSearch", "ListTooLong", "Measures", "Mesh", "PairContacts",
+           "PairDistances", "PartPairs", "Patches", "Plan", "Points", "Proximities", "RESPONSES", "Recording",
+           "Replay", "SafeMotion", "Scene", "TetSurface", "UNTANGLE_STARTS", "Untangled", "Wires", "__version__",
+           "contacts", "intersections", "is_self_intersecting", "pairs_near", "pairs_step", "read", "replay",
+           "self_intersecting_faces", "self_intersections", "tet_surface", "untangle", "untangle_frames",
+           "write_report"]

@@ -21,7 +21,7 @@ __all__ = ["address_of", "copy_items", "copy_list", "items_of", "library", "new_
 
 _NONE = 2**32 - 1
 _ITEMS_AT_ONCE = 1 << 16
-_INDICES_MAY_BE_NONE = ("component", "depth", "event", "part_pair")
+_INDICES_MAY_BE_NONE = ("component", "depth", "event", "lens", "lens_point", "part_pair")
 _FROM_PYTHON = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyErr_CheckSignals", "PyObject_CallFunction",
                 "PyObject_IsTrue", "Py_DecRef", "PyCapsule_New", "PyCapsule_GetPointer")
 

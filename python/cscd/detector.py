@@ -14,6 +14,7 @@ from ._library import address_of, items_of, library, new_struct, structs
 from ._options import DetectorOptions, in_python
 from .errors import InContact, ListTooLong
 from .intersections import Intersections, _Surface, collapsed_of, intersection_options, kind_set
+from .lenses import Lenses, Patches
 from .line_search import LineSearch
 from .live import LiveSettings
 from .measures import Measures
@@ -251,6 +252,48 @@ class Detector(LiveSettings):
         with host.lock:
             self._find(host, views, options)
             return _Surface(self._lists["intersections"], self.mesh.vertex_count, not parts, parts)
+
+    def _patches(self, positions: Any) -> Patches:
+        """Patches and cut-offs of positions that were looked at before."""
+        options = self._find_options(2**64 - 1, 0, False, False, False)
+        options["patches"] = options["cut_offs"] = True
+        views, kept = self._views("x", positions if len(positions) > 1 else positions[0])
+        host = self._host
+        with host.lock:
+            self._find(host, views, options)
+            found, mesh = self._lists["intersections"], self.mesh
+            _Surface(found, mesh.vertex_count, False, False).check_patches()
+            return Patches(found, mesh.vertex_count, mesh.triangle_count, mesh.component_count)
+
+    def find_lenses(self, x: Any, part_bodies: bool = False) -> Lenses:
+        """Which points of surfaces are on the wrong side at positions ``x``, where on the other sheet each belongs, in which
+        direction, and how far: the depth between two limbs, or of a fold.
+
+        Parameters
+        ----------
+        part_bodies : bool
+            Parts (``set_parts``) that are closed by themselves are bodies of their own. By default objects are the bodies,
+            as in ``untangle``, whose thickness is that of the thickest lens.
+
+        The tip of a box is in another one:
+
+        >>> corners = np.array([[v & 1, v >> 1 & 1, v >> 2] for v in range(8)])
+        >>> box = np.array([[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
+        ...                 [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]])
+        >>> x = np.concatenate([corners, 0.4 * corners + [0.9, 0.55, 0.1]])
+        >>> lenses = Detector(np.concatenate([box, box + 8])).find_lenses(x)
+        >>> lenses.reason_names(), lenses.points_of(0).vertex.tolist(), round(lenses.thickness, 12)
+        (['buried'], [8, 10, 12, 14], 0.1)
+        """
+        options = self._find_options(2**64 - 1, 0, False, False, False)
+        options["part_bodies"] = part_bodies
+        views, kept = self._views("x", x)
+        found = new_struct("lenses")
+        host = self._host
+        with host.lock:
+            host.call(library.cscdpy_detector_find_lenses, self._detector, address_of(views), address_of(options),
+                      address_of(found))
+            return Lenses(found)
 
     def near(self, x: Any, distance: float, unique: bool = False, beyond: bool = False) -> Proximities:
         """Every pair of features whose distance at positions ``x`` is at most ``distance``, a length above 0.

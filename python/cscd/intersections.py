@@ -12,6 +12,7 @@ from .results import INTERSECTION_KINDS, names_of
 
 if TYPE_CHECKING:
     from .detector import Detector
+    from .lenses import Patches
     from .mesh import Mesh
 
 __all__ = ["Curve", "Intersections", "PartPairs"]
@@ -91,6 +92,7 @@ class Intersections:
         self._positions = positions
         self._allowed = allowed
         self._surface: Optional[_Surface] = None
+        self._patches: Optional[Patches] = None
         #: For a frame of ``replay``: the findings, summed up by pair of parts.
         self.part_pairs: Optional[PartPairs] = None
         #: For a frame of ``replay``: results that do not fit ``max_memory`` or ``max_work``, as ("depths",); they raise
@@ -143,6 +145,14 @@ class Intersections:
         return self._found().curves()
 
     @property
+    def patches(self) -> Patches:
+        """What the curves cut surfaces into, what buries these, and what curves cut off of open surfaces."""
+        if self._patches is None:
+            detector, positions = self._again()
+            self._patches = detector._patches(positions)
+        return self._patches
+
+    @property
     def buried(self) -> Array:
         """(n,) bool: the vertices that an object contains; of their own one, that it contains twice."""
         return self._found().buried
@@ -187,10 +197,10 @@ class Intersections:
 
     def _again(self) -> Tuple[Detector, Any]:
         if not self._allowed:
-            raise ValueError("curves, buried, depth and parts need the list of all pairs; leave out kinds= and "
+            raise ValueError("curves, patches, buried, depth and parts need the list of all pairs; leave out kinds= and "
                              "stop_after=")
         if self._detector is None:
-            raise ValueError("curves, buried, depth and parts are computed when they are asked for, and do not "
+            raise ValueError("curves, patches, buried, depth and parts are computed when they are asked for, and do not "
                              "come along in a copy or a pickle; ask for them before")
         return self._detector, self._positions
 
@@ -245,6 +255,12 @@ class _Surface:
     def _refuse(self, name: str) -> NoReturn:
         raise MemoryError(f"the {name} of {self._pair_count} pairs of triangles do not fit {self._wanted}; "
                           "are the vertices in another order than those of the faces?")
+
+    def check_patches(self) -> None:
+        """Fails if patches or cut-offs did not fit."""
+        for name in ("curves", "patches", "cut-offs"):
+            if name in self.left_out:
+                self._refuse(name)
 
     @classmethod
     def none(cls, vertex_count: int) -> _Surface:

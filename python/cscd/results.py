@@ -141,7 +141,7 @@ class Untangled(NamedTuple):
     displacement, mean_displacement : float
         How far it moved, and the mean of those that moved.
     thickness : float
-        About how deep the parts were in each other; 0: not known.
+        How deep the parts were in each other: of the thickest lens (``Detector.find_lenses``); 0: not known.
     start : str
         A name of ``UNTANGLE_STARTS``.
     rounds, steps : int
