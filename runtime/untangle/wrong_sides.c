@@ -19,12 +19,16 @@ static void count_crossings(lens_finder *f, const cscd_curves *curves) {
     }
 }
 
-static void join_patches(lens_finder *f) {
+/* A curve that ends at a vertex of both triangles goes on from there as its other trace, so no patch leads through that vertex. */
+static void join_patches(lens_finder *f, const cscd_patches *patches) {
     const cscd_mesh *mesh = f->w->mesh;
     const uint32_t *names = f->w->graph.names;
     sets_begin(f->patches, mesh->vertex_count);
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
-        if (f->crossings[e] == 0) set_unite(f->patches, mesh->edges[e][0], mesh->edges[e][1]);
+        const uint32_t *ends = mesh->edges[e];
+        if (f->crossings[e] == 0 && patches->vertex_patches[ends[0]] != UINT32_MAX &&
+            patches->vertex_patches[ends[1]] != UINT32_MAX)
+            set_unite(f->patches, ends[0], ends[1]);
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) set_unite(f->patches, v, names[v]);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) f->patches[v] = set_root(f->patches, v);
@@ -184,7 +188,7 @@ static void look_out(lens_finder *f) {
 
 bool wrong_sides_find(lens_finder *f, const cscd_intersections *found) {
     count_crossings(f, found->curves);
-    join_patches(f);
+    join_patches(f, found->patches);
     mark_buried(f, found->patches);
     if (!list_neighbours(f, found->curves) || !colour_patches(f)) return false;
     take_colours(f);

@@ -419,6 +419,54 @@ TEST(what_no_curve_decides_is_counted) {
     close_rig();
 }
 
+/* A sheet with a crease that passes through itself: the curve ends where the crease begins, so both of its traces bound the one
+ * patch within, which is halved. */
+TEST(folds_are_halved) {
+    enum { N = 24 };
+    begin_shapes();
+    add_plate((const double[]){-1.6, -1.5, 0.0}, (const double[]){3.2, 0.0, 0.0},
+              (const double[]){0.0, 3.0, 0.0}, N - 1);
+    static double sides[SCENE_VERTICES_MAX];
+    for (uint32_t v = 0; v < the.shape.vertex_count; v++) {
+        double *x = the.shape.x0 + 3 * (size_t)v;
+        const double t = sides[v] = x[0], s = x[1];
+        x[0] = t * t * t - (1.0 - s * s) * t;
+        x[1] = t * t;
+        x[2] = s + 0.07 * t;
+    }
+    open_with(1, NULL);
+    find_now();
+    expect_promises(the.shape.x0);
+    assert_true(the.found.count >= 2);
+    size_t halves[2] = {0, 0};
+    static size_t lens_of[SCENE_VERTICES_MAX];
+    memset(lens_of, 0xff, sizeof lens_of);
+    for (size_t i = 0; i < 2; i++) {
+        const cscd_lens *lens = &the.found.items[i];
+        for (size_t k = 0; k < lens->point_count; k++)
+            lens_of[the.found.points[lens->first_point + k].vertex] = i;
+    }
+    for (size_t i = 0; i < 2; i++) {
+        const cscd_lens *lens = &the.found.items[i];
+        size_t own = 0;
+        const double side = lens->axis[0] > 0.0 ? 1.0 : -1.0;
+        assert_true(lens->fold && lens->reason == CSCD_LENS_SMALLER);
+        assert_int_equal(lens->patch, the.found.items[0].patch);
+        assert_true(side * lens->axis[0] > 0.9);
+        assert_true(lens->thickness > 0.3 && lens->thickness < 0.77);
+        for (size_t k = 0; k < lens->point_count; k++) {
+            const cscd_lens_point *p = &the.found.points[lens->first_point + k];
+            const uint32_t *corners = the.shape.triangles + 3 * (size_t)p->triangle;
+            for (int c = 0; c < 3; c++) assert_true(lens_of[corners[c]] != i);
+            own += side * sides[p->vertex] > 0.0;
+        }
+        assert_true(5 * own > 4 * lens->point_count); /* halves are by distances along edges */
+        halves[side > 0.0] = own;
+    }
+    assert_true(halves[0] > 60 && halves[1] > 60);
+    close_rig();
+}
+
 /* ---- flush ------------------------------------------------------------------------------------------------- */
 
 /* Two boxes stand on each other. No body winds around the corners, but they have to part. */
