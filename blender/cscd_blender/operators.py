@@ -15,6 +15,7 @@ from . import marks
 from .checking import Findings, Run, run_to_end
 from .properties import findings_of, is_running, keep_findings, say_running
 from .scene import KeptFrame, SceneError, read_frames
+from .untangling import UntangleRun, untangle_to_end
 
 #: Seconds between two turns of a run, and how long a turn waits.
 _TICK, _PATIENCE = 0.02, 0.01
@@ -106,6 +107,97 @@ class CSCD_OT_check(bpy.types.Operator):
         if scene is None:
             raise SceneError(f"the scene {self._scene_name!r} is no longer there")
         return scene
+
+    def cancel(self, context: Any) -> None:
+        """Ends the run early; also called when the window closes."""
+        if self._run is not None:
+            self._run.cancel()
+        self._end(context)
+
+    def _end(self, context: Any) -> None:
+        say_running(self._scene_name, False)
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+        self._timer = self._run = None
+        _redraw(context)
+
+
+class CSCD_OT_untangle(bpy.types.Operator):
+    """Lead the active object out of itself and of the others, as shape keys. Esc ends it"""
+
+    bl_idname = "cscd.untangle"
+    bl_label = "Untangle"
+    bl_options = {"REGISTER", "UNDO"}
+
+    every_frame: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        name="All frames", description="Each frame of the range has a key of its own, which is keyed; else this frame has one")
+
+    _run: Optional[UntangleRun] = None
+    _scene_name = ""
+    _timer: Any = None
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Go to object mode: what is untangled is the object as it is rendered")
+            return False
+        return not is_running() and context.view_layer.objects.active is not None
+
+    def _say(self, scene: Any, result: Any) -> Set[str]:
+        scene.cscd.untangled = result.sentence
+        self.report({"INFO"} if result.clean else {"WARNING"}, result.sentence)
+        return {"FINISHED"}
+
+    def execute(self, context: Any) -> Set[str]:
+        """The whole run at once, for scripts."""
+        try:
+            result = untangle_to_end(context, context.scene.cscd.untangle_request(context, self.every_frame))
+        except _FAILURES as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        return self._say(context.scene, result)
+
+    def invoke(self, context: Any, event: Any) -> Set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            self._run = UntangleRun(context, context.scene.cscd.untangle_request(context, self.every_frame))
+        except _FAILURES as problem:
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        self._scene_name = context.scene.name
+        context.scene.cscd.progress = 0.0
+        say_running(self._scene_name, True)
+        self._timer = context.window_manager.event_timer_add(_TICK, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: Any, event: Any) -> Set[str]:
+        if event.type == "ESC":
+            self.cancel(context)
+            self.report({"INFO"}, "Stopped; nothing was changed")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        assert self._run is not None
+        scene = bpy.data.scenes.get(self._scene_name)
+        try:
+            more = self._run.step(_PATIENCE)
+        except _FAILURES as problem:
+            self._end(context)
+            self.report({"ERROR"}, str(problem))
+            return {"CANCELLED"}
+        except BaseException:
+            self._end(context)
+            raise
+        if scene is not None:
+            scene.cscd.progress = 100.0 * self._run.done / (self._run.total + 1)
+        _redraw(context)
+        if more:
+            return {"RUNNING_MODAL"}
+        result = self._run.result
+        self._end(context)
+        return self._say(scene or context.scene, result)
 
     def cancel(self, context: Any) -> None:
         """Ends the run early; also called when the window closes."""
@@ -390,8 +482,8 @@ class CSCD_OT_report(bpy.types.Operator):
         return {"FINISHED"}
 
 
-_classes = (CSCD_OT_check, CSCD_OT_mark_attributes, CSCD_OT_mark_groups, CSCD_OT_mark_materials, CSCD_OT_mark_curves,
-            CSCD_OT_mark_timeline, CSCD_OT_clear, CSCD_OT_show_event, CSCD_OT_ignore, CSCD_OT_look_at_again,
-            CSCD_OT_report)
+_classes = (CSCD_OT_check, CSCD_OT_untangle, CSCD_OT_mark_attributes, CSCD_OT_mark_groups, CSCD_OT_mark_materials,
+            CSCD_OT_mark_curves, CSCD_OT_mark_timeline, CSCD_OT_clear, CSCD_OT_show_event, CSCD_OT_ignore,
+            CSCD_OT_look_at_again, CSCD_OT_report)
 
 register, unregister = bpy.utils.register_classes_factory(_classes)

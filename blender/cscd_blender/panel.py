@@ -73,7 +73,9 @@ class CSCD_PT_check(_CscdPanel, bpy.types.Panel):
         if is_running():
             layout.prop(settings, "progress", slider=True, text="Esc stops")
         else:
-            layout.operator("cscd.check", icon="PLAY")
+            row = layout.split(factor=0.7, align=True)
+            row.operator("cscd.check", icon="PLAY")
+            row.operator("cscd.untangle", icon="MOD_SMOOTH").every_frame = False
 
 
 class CSCD_PT_left_out(_CscdPanel, bpy.types.Panel):
@@ -90,6 +92,28 @@ class CSCD_PT_left_out(_CscdPanel, bpy.types.Panel):
         buttons = row.column(align=True)
         buttons.operator("cscd.ignore", icon="ADD", text="").from_event = False
         buttons.operator("cscd.look_at_again", icon="REMOVE", text="")
+
+
+class CSCD_PT_untangle(_CscdPanel, bpy.types.Panel):
+    bl_idname = "CSCD_PT_untangle"
+    bl_label = "Untangle"
+    bl_parent_id = "CSCD_PT_check"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        layout, settings, active = self.layout, context.scene.cscd, context.view_layer.objects.active
+        column = layout.column()
+        column.enabled = not is_running()
+        column.prop(settings, "gap")
+        if active is not None and active.type == "MESH":
+            column.prop_search(settings, "pin_group", active, "vertex_groups")
+        column.prop(settings, "steady")
+        column.operator("cscd.untangle", text="This Frame").every_frame = False
+        column.operator("cscd.untangle", text="All Frames").every_frame = True
+        lines = layout.column(align=True)
+        lines.scale_y = 0.8
+        for line in _wrapped(settings.untangled, max(24, context.region.width // 8)):
+            lines.label(text=line)
 
 
 class CSCD_PT_events(_CscdPanel, bpy.types.Panel):
@@ -147,6 +171,6 @@ def _wrapped(text: str, width: int) -> List[str]:
     return lines
 
 
-_classes = (CSCD_UL_events, CSCD_UL_ignored, CSCD_PT_check, CSCD_PT_left_out, CSCD_PT_events, CSCD_PT_marks)
+_classes = (CSCD_UL_events, CSCD_UL_ignored, CSCD_PT_check, CSCD_PT_left_out, CSCD_PT_events, CSCD_PT_marks, CSCD_PT_untangle)
 
 register, unregister = bpy.utils.register_classes_factory(_classes)

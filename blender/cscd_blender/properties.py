@@ -7,7 +7,8 @@ from typing import Any, Dict, Optional, Set, Tuple
 import bpy
 
 from .checking import Findings, FoundEvent, Request
-from .scene import SceneError
+from .scene import SceneError, frames_of
+from .untangling import UntangleRequest
 
 #: The findings of this session, by the name of the scene; a file keeps the list of events alone.
 _findings: Dict[str, Findings] = {}
@@ -127,6 +128,25 @@ class CscdSettings(bpy.types.PropertyGroup):
     summary: bpy.props.StringProperty()  # type: ignore[valid-type]
     progress: bpy.props.FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100,  # type: ignore[valid-type]
                                       options={"SKIP_SAVE"})
+
+    gap: bpy.props.FloatProperty(  # type: ignore[valid-type]
+        name="Gap", default=0.0, min=0.0, unit="LENGTH", precision=4, description="Surfaces keep this distance after Untangle")
+    pin_group: bpy.props.StringProperty(  # type: ignore[valid-type]
+        name="Pin",
+        description="A vertex group of the active object: vertices of weight 1 stay, others the more the larger it is")
+    steady: bpy.props.FloatProperty(  # type: ignore[valid-type]
+        name="Steady", default=0.5, min=0.0, max=0.99,
+        description="Of several frames: near 1 a displacement lasts from frame to frame, against jitter")
+    untangled: bpy.props.StringProperty()  # type: ignore[valid-type]
+
+    def untangle_request(self, context: Any, every_frame: bool) -> UntangleRequest:
+        """What these settings ask for: the active object in the frame at hand, or in the frames of a check."""
+        thing, scene = context.view_layer.objects.active, context.scene
+        if thing is None:
+            raise SceneError("no object is active: click the one whose vertices are to move")
+        beside = self.request(context)
+        frames = frames_of(scene, beside.first, beside.last) if every_frame else (scene.frame_current,)
+        return UntangleRequest(thing.name_full, beside, tuple(frames), self.gap, self.pin_group, self.steady)
 
     def request(self, context: Any) -> Request:
         """What these settings ask for."""

@@ -46,7 +46,8 @@ def untangle(V: Any, F: Any, *, gap: float = 0.0, threads: int = 1, progress: Pr
 
 
 def untangle_frames(frames: Iterable[Any], F: Any, *, gap: float = 0.0, steady: float = 0.0, threads: int = 1,
-                    max_seconds: float = float("inf"), **options: Any) -> Iterator[Untangled]:
+                    weights: Any = None, spread: float = 0.0, max_seconds: float = float("inf"),
+                    **options: Any) -> Iterator[Untangled]:
     """Untangles the frames of a recording one after the other; each starts from the clean result of the one before.
 
     Parameters
@@ -56,7 +57,7 @@ def untangle_frames(frames: Iterable[Any], F: Any, *, gap: float = 0.0, steady: 
         In [0, 1): how far the displacement of a frame goes on in the next one, against jitter.
     max_seconds : float
         For each frame.
-    gap, threads, options
+    gap, threads, weights, spread, options
         Those of ``untangle``.
     """
     detector: Optional[Detector] = None
@@ -65,7 +66,7 @@ def untangle_frames(frames: Iterable[Any], F: Any, *, gap: float = 0.0, steady: 
         positions = as_positions("frame", frame)
         if detector is None:
             detector = Detector(mesh_of(F, positions), threads=threads, min_separation=gap, **options)
-        result = detector.untangle(positions, start=start, start_input=start_input, steady=steady,
+        result = detector.untangle(positions, start=start, start_input=start_input, steady=steady, weights=weights, spread=spread,
                                    max_seconds=max_seconds)
         if result.clean:
             start, start_input = result.vertices.copy(), positions.copy()

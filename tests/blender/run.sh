@@ -60,6 +60,11 @@ blender --background --factory-startup --python-use-system-env --python-exit-cod
     exit 1
 }
 grep '^changes:' "$folder/log"
+blender --background --factory-startup --python-use-system-env --python-exit-code 1 --python untangle.py >"$folder/log" 2>&1 || {
+    tail -20 "$folder/log"
+    exit 1
+}
+grep '^untangle:' "$folder/log"
 ./farm.sh "$folder/page/doll.blend" "$folder/farm"
 mkdir "$folder/scripts"
 env -u PYTHONPATH BLENDER_USER_SCRIPTS="$folder/scripts" blender --background "$folder/page/doll.blend" --factory-startup \
