@@ -99,6 +99,10 @@ cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, csc
                             ipc_solver *out);
 void ipc_solver_free(ipc_solver *p);
 
+/* Begins at other positions, at rest; springs keep their lengths. No step leads out of triangles that cross, so such
+ * a start is refused: *clean is false, and nothing has changed. cscd_detector_untangle finds one near it. */
+cscd_status ipc_solver_start(ipc_solver *p, const double *positions, bool *clean);
+
 /* Takes one time step: begin, iterate until it is done, end. */
 cscd_status ipc_solver_advance(ipc_solver *p);
 

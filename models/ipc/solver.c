@@ -96,6 +96,21 @@ cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, csc
     return CSCD_OK;
 }
 
+cscd_status ipc_solver_start(ipc_solver *p, const double *positions, bool *clean) {
+    const size_t size = (size_t)p->shape.vertex_count * 3 * sizeof *positions;
+    cscd_intersection_options options = cscd_intersection_defaults();
+    cscd_intersections found;
+    options.answer = CSCD_ANSWER_COUNT;
+    cscd_status status = cscd_detector_find_intersections(
+        p->detector, CSCD_DOUBLES(positions, p->shape.vertex_count), &options, &found);
+    if (status != CSCD_OK) return status;
+    *clean = found.count == 0;
+    if (!*clean) return CSCD_OK;
+    memcpy(p->positions, positions, size);
+    memset(p->velocities, 0, size);
+    return find_first_contacts(p);
+}
+
 void ipc_solver_free(ipc_solver *p) {
     cscd_energy_destroy(p->barrier);
     cscd_line_search_destroy(p->line);
