@@ -73,9 +73,9 @@ class CSCD_PT_check(_CscdPanel, bpy.types.Panel):
         if is_running():
             layout.prop(settings, "progress", slider=True, text="Esc stops")
         else:
-            row = layout.split(factor=0.7, align=True)
+            row = layout.split(factor=0.6, align=True)
             row.operator("cscd.check", icon="PLAY")
-            row.operator("cscd.untangle", icon="MOD_SMOOTH").every_frame = False
+            row.operator("cscd.untangle").every_frame = False
 
 
 class CSCD_PT_left_out(_CscdPanel, bpy.types.Panel):

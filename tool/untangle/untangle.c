@@ -72,7 +72,7 @@ const option_table untangle_table = {
         {"untangle body.obj -o clean.obj",
          "Move the vertices of a mesh until nothing crosses or touches, and write it with all else as it was."},
         {"untangle body.obj body.pc2 -o clean.pc2 --frames 60:120 --steady 0.5 --report clean.html",
-         "The same of the frames 60 to 120, with displacements that do not jump from frame to frame, and a page to look at them."},
+         "The same of the frames 60 to 120, without jumps from frame to frame, and a page to look at."},
         {"untangle shirt.obj --obstacle body=body.obj -o start.obj --gap 2mm --unit m",
          "Move the shirt alone, until it is 2 mm from the body and from itself everywhere: a start for a solver."}}};
 
