@@ -8,7 +8,7 @@
 
 static const double half_turn = 3.14159265358979323846;
 
-const char *tangle_class_name(tangle_class of) {
+const char *random_tangle_name(random_tangle_class of) {
     static const char *const names[TANGLE_CLASSES] = {"bodies", "sheets", "folds",     "rods",
                                                       "boxes",  "soups",  "one place", "mixtures"};
     return names[of];
@@ -217,7 +217,7 @@ static void make_loose(random_tangle *t, random_stream *random) {
                                 : cscd_object_half_space(t->normal);
 }
 
-static void make_object(random_tangle *t, random_stream *random, tangle_class of) {
+static void make_object(random_tangle *t, random_stream *random, random_tangle_class of) {
     switch (of) {
     case TANGLE_BODIES:
         make_ball(t, random, false);
@@ -249,12 +249,12 @@ static void make_object(random_tangle *t, random_stream *random, tangle_class of
 static void make_objects(random_tangle *t, random_stream *random) {
     static const uint32_t least[TANGLE_CLASSES] = {2, 2, 1, 2, 1, 1, 1, 2},
                           most[TANGLE_CLASSES] = {3, 3, 2, 3, 3, 2, 2, 3};
-    t->of = (tangle_class)stream_below(random, TANGLE_CLASSES);
+    t->of = (random_tangle_class)stream_below(random, TANGLE_CLASSES);
     const uint32_t count = least[t->of] + stream_below(random, most[t->of] - least[t->of] + 1);
-    tangle_class of = t->of;
+    random_tangle_class of = t->of;
     for (uint32_t o = 0; o < count; o++) {
         if (t->of == TANGLE_MIXTURES || (t->of == TANGLE_PLACES && o == 0))
-            of = (tangle_class)stream_below(random, TANGLE_PLACES);
+            of = (random_tangle_class)stream_below(random, TANGLE_PLACES);
         make_object(t, random, of);
     }
     if (one_in(random, 12)) make_loose(t, random);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef enum tangle_class {
+typedef enum random_tangle_class {
     TANGLE_BODIES, /* balls in each other, some turned inside out in places */
     TANGLE_SHEETS, /* open sheets that cross */
     TANGLE_FOLDS, /* a sheet that is rolled through itself, or a ball whose pole is pushed out on the other side */
@@ -18,14 +18,14 @@ typedef enum tangle_class {
     TANGLE_PLACES, /* all vertices of one of the above, or of one of its objects, on one point, line or plane */
     TANGLE_MIXTURES,
     TANGLE_CLASSES
-} tangle_class;
+} random_tangle_class;
 
-const char *tangle_class_name(tangle_class of);
+const char *random_tangle_name(random_tangle_class of);
 
 enum { TANGLE_OBJECTS = 4, TANGLE_VERTICES = 420, TANGLE_TRIANGLES = 720, TANGLE_PAIRS = 24 };
 
 typedef struct random_tangle {
-    tangle_class of;
+    random_tangle_class of;
     uint32_t object_count, vertex_count, triangle_count;
     cscd_object_desc objects[TANGLE_OBJECTS];
     uint32_t first_vertex[TANGLE_OBJECTS + 1], first_triangle[TANGLE_OBJECTS + 1];
