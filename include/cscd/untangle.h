@@ -160,6 +160,14 @@ typedef struct cscd_untangle_options {
      * thickness of what intersects. */
     double spread;
 
+    /* A shape without intersections, in the same unit: near what intersects, edges are drawn to the lengths and
+     * angles that they have there, turned as the surface is now. NULL, the default: to those of the input. */
+    const cscd_view *rest;
+
+    /* A length: displacements bend smoothly over it, at about three times the cost. 0, the default: they need
+     * not. */
+    double bending;
+
     double max_seconds; /* then the call ends with the best so far; INFINITY by default */
 } cscd_untangle_options;
 

@@ -390,8 +390,8 @@ class Detector(LiveSettings):
             return reached, SafeMotion.of(found[0], self.mesh.vertex_count)
 
     def untangle(self, x: Any, *, start: Any = None, start_input: Any = None, steady: float = 0.0, weights: Any = None,
-                 spread: float = 0.0, max_seconds: float = np.inf, max_rounds: int = 60, max_steps: int = 40,
-                 out: Optional[Array] = None) -> Untangled:
+                 spread: float = 0.0, rest: Any = None, bending: float = 0.0, max_seconds: float = np.inf,
+                 max_rounds: int = 60, max_steps: int = 40, out: Optional[Array] = None) -> Untangled:
         """Finds positions near ``x`` at which nothing intersects; the result is never worse (include/cscd/untangle.h).
 
         Parameters
@@ -404,6 +404,10 @@ class Detector(LiveSettings):
             How strongly each vertex is drawn to ``x``; above 0, and ``inf`` pins it. 1 each by default.
         spread : float
             The length over which displacements are spread; 0: about twice the thickness of what intersects.
+        rest : (n, 3), optional
+            A shape without intersections: near what intersects, edges are drawn to the lengths and angles that they have there.
+        bending : float
+            The length over which displacements bend smoothly, at about three times the cost; 0: they may have edges.
         max_seconds : float
             Then the call ends with the best so far.
         max_rounds, max_steps : int
@@ -418,10 +422,12 @@ class Detector(LiveSettings):
         library.cscd_untangle_defaults_sized(address_of(options), options.nbytes)
         numbers = as_numbers("weights", weights, self.mesh.vertex_count)
         given = [self._views(name, value) if value is not None else None
-                 for name, value in (("start", start), ("start_input", start_input))]
+                 for name, value in (("start", start), ("start_input", start_input), ("rest", rest))]
         options["weights"] = 0 if numbers is None else address_of(numbers)
-        options["start"], options["start_input"] = [0 if one is None else address_of(one[0]) for one in given]
-        options["steady"], options["spread"] = number_of("steady", steady), number_of("spread", spread)
+        for name, one in zip(("start", "start_input", "rest"), given):
+            options[name] = 0 if one is None else address_of(one[0])
+        for name, length in (("steady", steady), ("spread", spread), ("bending", bending)):
+            options[name] = number_of(name, length)
         options["max_seconds"] = max_seconds
         options["max_rounds"] = count_of("max_rounds", max_rounds, 2**32 - 1)
         options["max_steps"] = count_of("max_steps", max_steps, 2**32 - 1)

@@ -11,7 +11,8 @@ from .results import Untangled
 
 
 def untangle(V: Any, F: Any, *, gap: float = 0.0, threads: int = 1, progress: Progress = None, weights: Any = None,
-             start: Any = None, spread: float = 0.0, max_seconds: float = float("inf"), **options: Any) -> Untangled:
+             start: Any = None, spread: float = 0.0, rest: Any = None, bending: float = 0.0, max_seconds: float = float("inf"),
+             **options: Any) -> Untangled:
     """Positions near ``V`` at which no two triangles intersect, with the same faces; never worse than ``V``.
 
     Parameters
@@ -24,7 +25,7 @@ def untangle(V: Any, F: Any, *, gap: float = 0.0, threads: int = 1, progress: Pr
         0: one per processor.
     progress : function (stage, fraction), optional
         If it raises or the call is interrupted, the best so far is lost; ``max_seconds`` keeps it.
-    weights, start, spread, max_seconds
+    weights, start, spread, rest, bending, max_seconds
         Those of ``Detector.untangle``.
     options
         Further ones of ``Detector``, as ``seams`` and ``ignored``.
@@ -42,12 +43,13 @@ def untangle(V: Any, F: Any, *, gap: float = 0.0, threads: int = 1, progress: Pr
     """
     positions = as_positions("V", V)
     detector = Detector(mesh_of(F, positions), threads=threads, progress=progress, min_separation=gap, **options)
-    return detector.untangle(positions, weights=weights, start=start, spread=spread, max_seconds=max_seconds)
+    return detector.untangle(positions, weights=weights, start=start, spread=spread, rest=rest, bending=bending,
+                             max_seconds=max_seconds)
 
 
 def untangle_frames(frames: Iterable[Any], F: Any, *, gap: float = 0.0, steady: float = 0.0, threads: int = 1,
-                    weights: Any = None, spread: float = 0.0, max_seconds: float = float("inf"),
-                    **options: Any) -> Iterator[Untangled]:
+                    weights: Any = None, spread: float = 0.0, rest: Any = None, bending: float = 0.0,
+                    max_seconds: float = float("inf"), **options: Any) -> Iterator[Untangled]:
     """Untangles the frames of a recording one after the other; each starts from the clean result of the one before.
 
     Parameters
@@ -55,9 +57,11 @@ def untangle_frames(frames: Iterable[Any], F: Any, *, gap: float = 0.0, steady: 
     frames : iterable of (n, 3)
     steady : float
         In [0, 1): how far the displacement of a frame goes on in the next one, against jitter.
+    rest : (n, 3), optional
+        The rest shape of all frames, as of ``Detector.untangle``.
     max_seconds : float
         For each frame.
-    gap, threads, weights, spread, options
+    gap, threads, weights, spread, bending, options
         Those of ``untangle``.
     """
     detector: Optional[Detector] = None
@@ -67,7 +71,7 @@ def untangle_frames(frames: Iterable[Any], F: Any, *, gap: float = 0.0, steady: 
         if detector is None:
             detector = Detector(mesh_of(F, positions), threads=threads, min_separation=gap, **options)
         result = detector.untangle(positions, start=start, start_input=start_input, steady=steady, weights=weights, spread=spread,
-                                   max_seconds=max_seconds)
+                                   rest=rest, bending=bending, max_seconds=max_seconds)
         if result.clean:
             start, start_input = result.vertices.copy(), positions.copy()
         yield result

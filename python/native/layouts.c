@@ -249,6 +249,7 @@ FIELDS(untangle_options, FIELD(cscd_untangle_options, struct_size), FIELD(cscd_u
        FIELD(cscd_untangle_options, max_steps), FIELD(cscd_untangle_options, weights),
        FIELD(cscd_untangle_options, start), FIELD(cscd_untangle_options, start_input),
        FIELD(cscd_untangle_options, steady), FIELD(cscd_untangle_options, spread),
+       FIELD(cscd_untangle_options, rest), FIELD(cscd_untangle_options, bending),
        FIELD(cscd_untangle_options, max_seconds))
 FIELDS(untangled, FIELD(cscd_untangled, start), FIELD(cscd_untangled, clean), FIELD(cscd_untangled, moved),
        FIELD(cscd_untangled, stopped), FIELD(cscd_untangled, pairs_before),

@@ -30,7 +30,7 @@ bool block_system_begin(block_system *s, uint32_t row_count) {
 }
 
 bool block_system_reserve(block_system *s, size_t entries) {
-    if (entries > SIZE_MAX / 32 - s->entry_count) return false;
+    if (entries > SIZE_MAX / 288 - s->entry_count) return false;
     const size_t wanted = s->entry_count + entries;
     if (wanted > s->entry_capacity) {
         const size_t room = room_with_spare(wanted);
@@ -39,9 +39,10 @@ bool block_system_reserve(block_system *s, size_t entries) {
         s->entries = grown;
         s->entry_capacity = room;
     }
-    if (wanted > s->value_capacity) {
-        const size_t room = room_with_spare(wanted);
-        double *grown = context_grow(s->context, s->values, s->value_count, room, 9 * sizeof *grown);
+    const size_t numbers = s->value_count + 9 * entries;
+    if (numbers > s->value_capacity) {
+        const size_t room = room_with_spare(numbers);
+        double *grown = context_grow(s->context, s->values, s->value_count, room, sizeof *grown);
         if (grown == NULL) return false;
         s->values = grown;
         s->value_capacity = room;

@@ -270,7 +270,7 @@ static cscd_status find_lenses(cscd_detector *d, const cscd_view *positions,
     if (status != CSCD_OK) return status;
     search.out.pairs = found.count;
     if (found.count > 0) {
-        const graph_source source = {search.x, d->config.exclusions.names, NULL, NULL};
+        const graph_source source = {.positions = search.x, .names = d->config.exclusions.names};
         status = vertex_graph_make(&work.graph, context, d->mesh, &source);
         if (status == CSCD_OK) status = search_lenses(&search, &work, &found);
         vertex_graph_free(&work.graph);

@@ -40,6 +40,9 @@ static cscd_status take_options(const cscd_mesh *mesh, cscd_context *context,
     if (!(out->spread >= 0.0 && out->spread < (double)INFINITY))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "spread is %g; it is a length, or 0",
                             out->spread);
+    if (!(out->bending >= 0.0 && out->bending < (double)INFINITY))
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "bending is %g; it is a length, or 0",
+                            out->bending);
     if (!(out->max_seconds >= 0.0))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "max_seconds is %g; it is 0 or more",
                             out->max_seconds);
@@ -343,6 +346,39 @@ static cscd_status try_starts(untangle_work *w, best_result *best, double *x) {
     return CSCD_OK;
 }
 
+/* ---- vertices that hardly move ---------------------------------------------------------------------------- */
+
+/* Displacements below this share of an edge, and of the greatest one, are taken back where this leaves the result clean. */
+static const double slight_of_edge = 1e-3, slight_of_greatest = 1e-2;
+
+/* Writes the result, but vertices that moved by less than this to where they were. Those of a seam move together. */
+static void take_back(const untangle_work *w, const best_result *best, double slight, double *x) {
+    const uint32_t *names = w->graph.names;
+    const double *input = w->input;
+    for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
+        const size_t at = 3 * (size_t)v, name = 3 * (size_t)names[v];
+        const double squared = vec3_squared_distance(best->x + name, input + name);
+        memcpy(x + at, (squared < slight * slight ? input : best->x) + at, sizeof(double[3]));
+    }
+}
+
+/* What an elastic energy moves by a hair, far from all that intersects, stays bit for bit. */
+static cscd_status keep_far_vertices(untangle_work *w, best_result *best, double *x) {
+    tangle_count count;
+    double slight = min_of(slight_of_edge * w->graph.edge_length, slight_of_greatest * best->displacement);
+    cscd_status status = CSCD_OK;
+    for (int i = 0; i < 2 && status == CSCD_OK && is_clean(best->count) && slight > 0.0; i++) {
+        take_back(w, best, slight, x);
+        status = work_count(w, x, &count);
+        if (status == CSCD_OK && is_clean(count)) {
+            memcpy(best->x, x, 3 * (size_t)w->mesh->vertex_count * sizeof *x);
+            break;
+        }
+        slight *= 0.1;
+    }
+    return status;
+}
+
 /* ---- the call ------------------------------------------------------------------------------------------ */
 
 static cscd_status measure_thickness(untangle_work *w, const cscd_intersections *found) {
@@ -365,6 +401,8 @@ static cscd_status look_at_input(untangle_work *w, best_result *best) {
     if (status != CSCD_OK) return status;
     best->count.pairs = w->found.pairs_before = found.count;
     status = found.count > 0 ? measure_thickness(w, &found) : CSCD_OK;
+    if (status == CSCD_OK && w->rest != NULL)
+        status = rest_shape_pull(w, w->rest, &found, spread_of(w, w->input));
     if (status == CSCD_OK) status = count_near(w, w->input, &best->count.near);
     w->found.near_before = best->count.near;
     return status;
@@ -422,18 +460,23 @@ static array_list work_arrays(untangle_work *w, best_result *best, double **x, d
 
 static cscd_status run_work(untangle_work *w, best_result *best, double *x, double *scratch) {
     const cscd_detector *d = w->detector;
-    const graph_source source = {w->input, d->config.exclusions.names, w->options.weights,
-                                 d->space.active.vertices};
     const size_t size = 3 * (size_t)w->mesh->vertex_count * sizeof *x;
+    cscd_status status = CSCD_OK;
     memcpy(w->goal, w->input, size);
     memcpy(best->x, w->input, size);
-    cscd_status status = vertex_graph_make(&w->graph, w->context, w->mesh, &source);
+    if (w->options.rest != NULL)
+        status = views_read(w->context, w->mesh, w->options.rest, "rest", &w->unpacked_rest, &w->rest);
+    const graph_source source = {w->input, w->rest, d->config.exclusions.names, w->options.weights,
+                                 d->space.active.vertices};
+    if (status == CSCD_OK) status = vertex_graph_make(&w->graph, w->context, w->mesh, &source);
     for (uint32_t v = 0; status == CSCD_OK && v < w->mesh->vertex_count; v++)
         w->inverse_masses[v] = w->graph.fixed[v] ? 0.0 : 1.0;
     if (status == CSCD_OK && !vertex_region_make(&w->region, &w->graph)) status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = energy_create(w->context, w->mesh, &w->energy);
     if (status == CSCD_OK) status = look_at_input(w, best);
     if (status == CSCD_OK) status = work_settle(w, search_result(w, best, x, scratch));
+    if (status == CSCD_OK && w->found.pairs_before + w->found.near_before > 0)
+        status = work_settle(w, keep_far_vertices(w, best, x));
     if (status == CSCD_OK) sum_up(w, best);
     return status;
 }
@@ -454,6 +497,8 @@ static cscd_status untangle_positions(untangle_work *w, const cscd_mutable_view 
     vertex_graph_free(&w->graph);
     vertex_region_free(&w->region, w->context);
     block_system_free(&w->system);
+    context_free(w->context, w->pulls);
+    context_free(w->context, w->unpacked_rest);
     if (w->energy != NULL) cscd_energy_destroy(w->energy);
     return status == CSCD_OK ? CSCD_OK : context_explain(w->context, status);
 }

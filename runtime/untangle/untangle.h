@@ -14,11 +14,15 @@ typedef struct untangle_work {
     const cscd_mesh *mesh;
     cscd_untangle_options options;
     const double *input; /* the given positions */
+    const double *rest;  /* the rest shape; NULL: there is none */
+    double *unpacked_rest;
     double *goal;       /* what the result is drawn to: the input, or towards the displacement of the start */
     vertex_graph graph; /* of the input */
     vertex_region region;
     block_system system;
     cscd_energy *energy;
+    double *pulls; /* of the rest shape, per unknown 3 numbers; NULL: there is none */
+    double pull_energy;
     double *right_side;            /* per row 3 numbers */
     double *inverse_masses;        /* per vertex 0 or 1 */
     double *reached;               /* positions */
@@ -59,7 +63,8 @@ cscd_status work_count(untangle_work *w, const double *x, tangle_count *out);
 
 /* ---- the elastic energy -------------------------------------------------------------------------------- */
 
-/* 1/2 u' (M + spread^2 L) u of displacements u, with the masses M and the Laplacian L of the graph: near the goal, and smooth. */
+/* 1/2 u' (M + spread^2 L + bending^4 L A^-1 L) u of displacements u, with the masses M, the areas A and the Laplacian L of the graph:
+ * near the goal, and smooth; and with a rest shape spread^2 times (pulls' u + pull_energy). */
 
 double elastic_value(const untangle_work *w, double spread, const double *u);
 
@@ -71,6 +76,10 @@ bool elastic_add(untangle_work *w, double spread);
 
 /* Over how many edges a length reaches. */
 uint32_t elastic_rings(const untangle_work *w, double length);
+
+/* Finds the pulls of a rest shape on vertices that are not farther than two spreads from the triangles of the pairs. OUT_OF_MEMORY. */
+cscd_status rest_shape_pull(untangle_work *w, const double *rest, const cscd_intersections *found,
+                            double spread);
 
 /* ---- stages -------------------------------------------------------------------------------------------- */
 

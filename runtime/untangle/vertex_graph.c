@@ -9,8 +9,8 @@
 static array_list list_arrays(vertex_graph *g) {
     const size_t n = g->mesh->vertex_count, pairs = 2 * (size_t)g->mesh->edge_count;
     return (array_list){{ARRAY(g->names, n), ARRAY(g->fixed, n), ARRAY(g->begins, n + 1),
-                         ARRAY(g->neighbours, pairs), ARRAY(g->couplings, pairs), ARRAY(g->masses, n),
-                         ARRAY(g->coupled, n)}};
+                         ARRAY(g->neighbours, pairs), ARRAY(g->couplings, pairs), ARRAY(g->areas, n),
+                         ARRAY(g->masses, n), ARRAY(g->coupled, n)}};
 }
 
 void vertex_graph_free(vertex_graph *g) {
@@ -83,7 +83,7 @@ static double unit_of_length(double length) {
     return ldexp(1.0, exponent - 1);
 }
 
-/* Masses, and couplings of the mesh's edges, both in the unit. Returns the area. */
+/* Areas, and couplings of the mesh's edges, both in the unit. Returns the whole area. */
 static double add_triangles(vertex_graph *g, const double *x, double *of_edges) {
     const double unit = unit_of_length(g->edge_length);
     const cscd_mesh *mesh = g->mesh;
@@ -95,7 +95,7 @@ static double add_triangles(vertex_graph *g, const double *x, double *of_edges) 
         const double area = area_of(unit, p[0], p[1], p[2]);
         sum += area;
         for (int k = 0; k < 3; k++) {
-            g->masses[g->names[corners[k]]] += area / 3.0;
+            g->areas[g->names[corners[k]]] += area / 3.0;
             of_edges[mesh->triangle_edges[t][k]] +=
                 half_cotangent(unit, p[(k + 2) % 3], p[k], p[(k + 1) % 3]) / (unit * unit);
         }
@@ -106,17 +106,20 @@ static double add_triangles(vertex_graph *g, const double *x, double *of_edges) 
 /* Weights beyond these are taken as these: their products with stiffnesses must be numbers, and sums of both more than rounding. */
 static const double least_weight = 1e-12, largest_weight = 1e12;
 
-/* A vertex of triangles without area has a thousandth of the mean mass. */
+/* A vertex of triangles without area has a thousandth of the mean area; 1, where nothing has any. */
 static void weigh_vertices(vertex_graph *g, double area, const double *weights) {
     const uint32_t n = g->mesh->vertex_count;
-    const double least = n > 0 ? 1e-3 * area / n : 0.0;
+    const double least = n > 0 && area > 0.0 ? 1e-3 * area / n : 1.0;
     for (uint32_t v = 0; v < n; v++) {
         if (g->names[v] != v) continue;
-        g->masses[v] = max_of(g->masses[v], least);
+        g->masses[v] = g->areas[v] = max_of(g->areas[v], least);
         if (weights != NULL && !g->fixed[v])
             g->masses[v] *= max_of(least_weight, min_of(weights[v], largest_weight));
     }
-    for (uint32_t v = 0; v < n; v++) g->masses[v] = g->masses[g->names[v]];
+    for (uint32_t v = 0; v < n; v++) {
+        g->areas[v] = g->areas[g->names[v]];
+        g->masses[v] = g->masses[g->names[v]];
+    }
 }
 
 static bool joins_unknowns(const vertex_graph *g, uint32_t edge) {
@@ -157,7 +160,7 @@ cscd_status vertex_graph_make(vertex_graph *g, cscd_context *context, const cscd
     }
     fix_vertices(g, from);
     g->edge_length = mean_length(g, from->positions);
-    const double area = add_triangles(g, from->positions, of_edges);
+    const double area = add_triangles(g, from->rest != NULL ? from->rest : from->positions, of_edges);
     weigh_vertices(g, area, from->weights);
     list_neighbours(g, of_edges);
     context_free(context, of_edges);

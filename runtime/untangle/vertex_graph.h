@@ -12,9 +12,10 @@ typedef struct vertex_graph {
     bool *fixed;     /* per vertex: it does not move */
     size_t *begins;  /* per vertex and one more: its range of the next two; empty unless it is an unknown */
     uint32_t *neighbours; /* unknowns, which may repeat at seams */
-    /* Both are divided by the square of a power of two near edge_length, so that energies are squares of lengths. */
+    /* All are divided by the square of a power of two near edge_length, so that energies are squares of lengths. */
     double *couplings;  /* of the edges there: halves of cotangents, clamped */
-    double *masses;     /* a third of the areas of the triangles, times the weight of the caller */
+    double *areas;      /* a third of those of the triangles */
+    double *masses;     /* areas, times the weight of the caller */
     double *coupled;    /* per unknown: the sum of its couplings */
     double edge_length; /* the mean */
 } vertex_graph;
@@ -22,6 +23,7 @@ typedef struct vertex_graph {
 /* What a graph is made from. */
 typedef struct graph_source {
     const double *positions;
+    const double *rest;    /* for areas and couplings; NULL: the positions */
     const uint32_t *names; /* per vertex: the first of its seam; NULL: there are no seams */
     const double *weights; /* per vertex, INFINITY: fixed; NULL: 1 each */
     const bool *movable;   /* per vertex; NULL: all */

@@ -56,6 +56,25 @@ def test_a_mesh_becomes_clean():
     assert len(moved) == frame["moved_vertices"] and frame["farthest"] in moved
 
 
+def test_a_rest_shape_and_bending_change_the_way():
+    ways = {}
+    for name, options in (("plain", ""), ("bent", "--bending 0.5m"), ("rest", "--rest-shape rest.obj")):
+        balls(2.5).write_mesh("rest.obj")
+        assert run(f"untangle balls.obj -o {name}.obj --unit m {options}").first_line.startswith("Clean: ")
+        assert checked(f"{name}.obj") == "Clean: no two triangles cross or touch."
+        ways[name] = points_of(f"{name}.obj")
+    assert ways["bent"] != ways["plain"]
+    numbers = [[float(x) for point in ways[name] for x in point] for name in ("plain", "rest")]
+    assert dist(*numbers) < 1e-5  # the same balls, elsewhere
+
+
+def test_a_rest_shape_has_the_same_faces():
+    Path("other.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    fails("untangle balls.obj -o clean.obj --rest-shape other.obj",
+          "--rest-shape: other.obj has 3 vertices and 1 triangles, and ")
+    fails("untangle balls.obj -o clean.obj --rest-shape none.obj", "--rest-shape: ", "none.obj")
+
+
 def test_a_clean_mesh_stays_as_it_is():
     balls(2.5).write_mesh("apart.obj")
     assert run("untangle apart.obj -o out.obj").first_line == "Clean: no two triangles cross or touch; nothing was moved."

@@ -454,3 +454,18 @@ TEST(a_cancelled_factorisation_can_be_repeated) {
     free(x);
     free(l.terms);
 }
+
+/* Room for one term after the other: none is written beyond it, and what was there stays. */
+TEST(rooms_grow_with_blocks) {
+    const term_list l = sphere_list(12, 20, 1e4);
+    block_system s = {.context = contexts[0]};
+    assert_true(block_system_begin(&s, l.row_count));
+    for (size_t k = 0; k < l.count; k++) {
+        assert_true(block_system_reserve(&s, 1));
+        assert_true(s.entry_capacity > s.entry_count && s.value_capacity >= s.value_count + 9);
+        block_system_add_block(&s, l.terms[k].i, l.terms[k].j, l.terms[k].block);
+    }
+    for (size_t k = 0; k < l.count; k++) assert_true(s.values[9 * k] == l.terms[k].block[0]);
+    block_system_free(&s);
+    free(l.terms);
+}

@@ -232,6 +232,116 @@ TEST(crossed_strips_part) {
     close_rig(r);
 }
 
+/* ---- the elastic energy -------------------------------------------------------------------------------- */
+
+/* A long sheet, and a sphere in one of its ends. */
+TEST(vertices_far_away_stay_bit_for_bit) {
+    tangle_rig *r = calloc(1, sizeof *r);
+    scene_clear(&r->shape);
+    scene_add_sheet(&r->shape, 20.0, 2.0, 61, 7);
+    const uint32_t n = r->shape.vertex_count;
+    double end[3] = {(double)INFINITY, 0.0, 0.0}, longest = 0.0;
+    for (uint32_t v = 0; v < n; v++) {
+        if (r->shape.x0[3 * v] < end[0]) memcpy(end, r->shape.x0 + 3 * v, sizeof end);
+    }
+    scene_add_sphere(&r->shape, (const double[]){end[0] + 1.4, end[1] + 1.0, end[2] + 0.45}, 0.5, 10, 14);
+    open_with(r, NULL, NULL);
+    expect_ok(untangle_at(r, r->shape.x0));
+    expect_promises(r, r->shape.x0);
+    assert_true(r->found.pairs_before > 0 && r->found.clean);
+    size_t moved = 0;
+    double shortest = 1.0;
+    for (uint32_t v = 0; v < n; v++) {
+        const double *from = r->shape.x0 + 3 * v, *to = r->reached + 3 * v;
+        const double way =
+            sqrt(pow(to[0] - from[0], 2.0) + pow(to[1] - from[1], 2.0) + pow(to[2] - from[2], 2.0));
+        longest = fmax(longest, way);
+        moved += way > 0.0;
+        if (way > 0.0) shortest = fmin(shortest, way);
+        if (from[0] > end[0] + 15.0) assert_memory_equal(from, to, sizeof(double[3]));
+    }
+    assert_true(moved > 0 && longest > 0.01 && shortest > 0.005 * longest);
+    close_rig(r);
+}
+
+/* The sum over vertices of the square of the sum of differences to neighbours: how displacements bend. */
+static double bending_of(const tangle_rig *r) {
+    static double sums[SCENE_VERTICES_MAX * 3];
+    double total = 0.0;
+    memset(sums, 0, sizeof sums);
+    for (uint32_t t = 0; t < r->shape.triangle_count; t++) {
+        for (int k = 0; k < 3; k++) {
+            const size_t a = 3 * (size_t)r->shape.triangles[3 * t + (uint32_t)k],
+                         b = 3 * (size_t)r->shape.triangles[3 * t + (uint32_t)((k + 1) % 3)];
+            for (size_t i = 0; i < 3; i++)
+                sums[a + i] +=
+                    (r->reached[a + i] - r->shape.x0[a + i]) - (r->reached[b + i] - r->shape.x0[b + i]);
+        }
+    }
+    for (size_t i = 0; i < 3 * (size_t)r->shape.vertex_count; i++) total += sums[i] * sums[i];
+    return total;
+}
+
+TEST(bending_makes_displacements_smoother) {
+    tangle_rig *r = make_spheres(0.3, NULL, NULL);
+    expect_ok(untangle_at(r, r->shape.x0));
+    const double before = bending_of(r);
+    r->options.bending = 0.5;
+    expect_ok(untangle_at(r, r->shape.x0));
+    expect_promises(r, r->shape.x0);
+    assert_true(r->found.clean);
+    assert_true(bending_of(r) < 0.7 * before);
+    close_rig(r);
+}
+
+/* How much the edges of a result differ from those of a shape. */
+static double stretch_of(const tangle_rig *r, const double *rest) {
+    double total = 0.0;
+    for (uint32_t t = 0; t < r->shape.triangle_count; t++) {
+        for (int k = 0; k < 3; k++) {
+            const size_t a = 3 * (size_t)r->shape.triangles[3 * t + (uint32_t)k],
+                         b = 3 * (size_t)r->shape.triangles[3 * t + (uint32_t)((k + 1) % 3)];
+            double is = 0.0, was = 0.0;
+            for (size_t i = 0; i < 3; i++) {
+                is += pow(r->reached[a + i] - r->reached[b + i], 2.0);
+                was += pow(rest[a + i] - rest[b + i], 2.0);
+            }
+            total += pow(sqrt(is) - sqrt(was), 2.0);
+        }
+    }
+    return total;
+}
+
+/* A rest shape that is the input in another place changes nothing; where the input is squeezed, results stretch again. */
+TEST(rest_shapes_give_back_lengths) {
+    tangle_rig *r = make_spheres(0.3, NULL, NULL);
+    static double rest[SCENE_VERTICES_MAX * 3], plain[SCENE_VERTICES_MAX * 3];
+    const uint32_t n = r->shape.vertex_count;
+    double *x = r->shape.x0;
+    expect_ok(untangle_at(r, x));
+    memcpy(plain, r->reached, sizeof plain);
+    for (size_t v = 0; v < n; v++) { /* turned by a half around z and moved */
+        rest[3 * v] = 5.0 - x[3 * v];
+        rest[3 * v + 1] = -2.0 - x[3 * v + 1];
+        rest[3 * v + 2] = x[3 * v + 2] + 1.0;
+    }
+    r->options.rest = CSCD_DOUBLES(rest, n);
+    expect_ok(untangle_at(r, x));
+    for (size_t i = 0; i < 3 * (size_t)n; i++) assert_true(fabs(r->reached[i] - plain[i]) < 1e-6);
+    for (size_t v = 0; v < n / 2; v++) {
+        if (x[3 * v] > 0.5) x[3 * v + 1] *= 0.6;
+    }
+    expect_ok(untangle_at(r, x));
+    expect_promises(r, x);
+    assert_true(r->found.clean);
+    const double drawn = stretch_of(r, rest);
+    r->options.rest = NULL;
+    expect_ok(untangle_at(r, x));
+    assert_true(r->found.clean);
+    assert_true(drawn < 0.5 * stretch_of(r, rest));
+    close_rig(r);
+}
+
 /* ---- the host ------------------------------------------------------------------------------------------ */
 
 typedef struct stage_log {
@@ -288,6 +398,10 @@ TEST(wrong_options_are_refused) {
     expect_refused(r, "steady");
     r->options.spread = -1.0;
     expect_refused(r, "spread");
+    r->options.bending = (double)INFINITY;
+    expect_refused(r, "bending");
+    r->options.rest = CSCD_DOUBLES(NULL, n);
+    expect_refused(r, "rest");
     r->options.max_seconds = (double)NAN;
     expect_refused(r, "max_seconds");
     r->options.start_input = CSCD_DOUBLES(r->shape.x0, n);

@@ -29,7 +29,7 @@ static void sheets_open(sewn_sheets *s, uint32_t seam, uint32_t pinned) {
         s->weights[v] = v == pinned ? (double)INFINITY : 1.0;
         memcpy(s->x + 3 * (size_t)v, sheet.x0 + 3 * (size_t)(v % ONE), sizeof(double[3]));
     }
-    const graph_source from = {s->x, s->names, s->weights, NULL};
+    const graph_source from = {.positions = s->x, .names = s->names, .weights = s->weights};
     expect_ok(cscd_context_create(NULL, &s->context));
     expect_ok(cscd_mesh_create(s->context, objects, 2, &s->mesh));
     expect_ok(vertex_graph_make(&s->graph, s->context, s->mesh, &from));

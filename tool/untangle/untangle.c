@@ -39,6 +39,10 @@ static const option_row rows[] = {
     {"spread", "LENGTH", read_length_given, offsetof(untangle_options, spread),
      "displacements are spread over so much of the surface: more is smoother and moves more (default: about twice how deep "
      "it is)"},
+    {"bending", "LENGTH", read_length_given, offsetof(untangle_options, bending),
+     "displacements bend smoothly over this length, which takes about three times as long (default: they may have edges)"},
+    {"rest-shape", "FILE", read_input_path, offsetof(untangle_options, rest_path),
+     "the same mesh in a shape that is right: where it is tangled, edges are drawn to the lengths and angles that they have there"},
     {"frames", "A:B[:STEP]", read_frames, offsetof(untangle_options, frames),
      "only the frames A to B, both included, or every STEP-th of them"},
     {"steady", "X", read_steady, offsetof(untangle_options, steady),

@@ -15,7 +15,8 @@ typedef struct untangle_state {
     untangle_pages pages;
     untangle_answer answer;
     terminal_progress progress;
-    double spread;                     /* in the files' unit; 0: not given */
+    double spread, bending;            /* in the files' unit; 0: not given */
+    double *rest;                      /* the rest shape; NULL: not given */
     double *weights;                   /* NULL: nothing is pinned */
     double *positions, *result;        /* of the frame at hand */
     double *start, *start_input;       /* the result for the frame before, and that frame; */
@@ -103,7 +104,8 @@ static bool take_lengths(untangle_state *u, io_error *error) {
     const answer_options unit_of = {.unit = o->unit};
     u->answer.unit = answer_options_unit(&unit_of, &u->recording);
     return take_length("--gap", &o->gap, &u->answer.unit, &u->answer.gap, error) &&
-           take_length("--spread", &o->spread, &u->answer.unit, &u->spread, error);
+           take_length("--spread", &o->spread, &u->answer.unit, &u->spread, error) &&
+           take_length("--bending", &o->bending, &u->answer.unit, &u->bending, error);
 }
 
 static bool create_detector(untangle_state *u, io_error *error) {
@@ -133,6 +135,14 @@ static bool allocate_positions(untangle_state *u, io_error *error) {
     return allocated || io_fail(error, "out of memory");
 }
 
+static bool read_rest(untangle_state *u, io_error *error) {
+    const char *path = u->options->rest_path;
+    if (path == NULL) return true;
+    u->rest = malloc(((size_t)vertex_count_of(u) * 3 + 1) * sizeof *u->rest);
+    if (u->rest == NULL) return io_fail(error, "out of memory");
+    return rest_shape_read(path, &u->recording, u->rest, error);
+}
+
 static bool choose_frames(untangle_state *u, io_error *error) {
     const recording *r = &u->recording;
     if (!frame_range_choose(&u->options->frames, r->frame_numbers, r->frame_count, &u->answer.choice, error))
@@ -153,7 +163,8 @@ static bool prepare_run(untangle_state *u, io_error *error) {
     u->first_clean_frame = UINT32_MAX;
     return choose_frames(u, error) && take_lengths(u, error) &&
            ignore_pairs_prepare(&u->options->ignored, &u->recording, &u->ignored, error) &&
-           pin_vertices(u, error) && create_detector(u, error) && allocate_positions(u, error) &&
+           pin_vertices(u, error) && read_rest(u, error) && create_detector(u, error) &&
+           allocate_positions(u, error) &&
            untangle_output_open(u->options->output_path, &u->recording, &u->answer.choice, &u->output,
                                 error) &&
            untangle_pages_open(u->options->report_path, u->answer.count, vertex_count_of(u), &u->pages,
@@ -264,8 +275,11 @@ static cscd_status reach_result(untangle_state *u, const cscd_untangle_options *
 static bool call_library(untangle_state *u, bool starts, cscd_untangled *found, io_error *error) {
     cscd_untangle_options options = cscd_untangle_defaults();
     typed_positions start, input;
+    const cscd_view rest = cscd_view_doubles(u->rest, vertex_count_of(u));
     options.weights = u->weights;
     options.spread = u->spread;
+    options.bending = u->bending;
+    if (u->rest != NULL) options.rest = &rest;
     if (starts) {
         options.start = view_positions(u, 2, u->start, &start);
         options.start_input = view_positions(u, 3, u->start_input, &input);
@@ -533,8 +547,8 @@ static void free_run(untangle_state *u) {
     cscd_detector_destroy(u->detector);
     ignore_pairs_free(&u->ignored);
     recording_close(&u->recording);
-    double *const arrays[] = {u->weights,     u->positions,   u->result,     u->start,
-                              u->start_input, u->first_clean, u->first_input};
+    double *const arrays[] = {u->weights,     u->positions,   u->result,      u->start,
+                              u->start_input, u->first_clean, u->first_input, u->rest};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     free(u->floats);
     free(u->moved);

@@ -18,8 +18,8 @@
 typedef struct untangle_options {
     recording_options source;
     frame_range frames;
-    const char *output_path, *json_path, *report_path;
-    length_given gap, spread;
+    const char *output_path, *json_path, *report_path, *rest_path;
+    length_given gap, spread, bending;
     length_unit unit;       /* its name is NULL: what the files say */
     part_pairs_list pinned; /* each a list of names */
     double steady, seconds; /* seconds: 0 for no limit */
@@ -31,6 +31,9 @@ extern const option_table untangle_table;
 
 /* Runs the command. Returns the exit code. */
 int untangle_run_on(const untangle_options *options);
+
+/* Reads positions at rest: those of the model from a file with the same faces. */
+bool rest_shape_read(const char *path, const recording *r, double *positions, io_error *error);
 
 /* ---- outputs ------------------------------------------------------------------------------------------- */
 
