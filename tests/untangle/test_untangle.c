@@ -364,9 +364,16 @@ TEST(what_is_cancelled_is_the_best_so_far) {
     expect_ok(untangle_at(r, r->shape.x0));
     const int calls = log.calls;
     for (int at = 1; at <= calls && at < 20; at++) {
+        double before[3];
+        memcpy(before, r->reached, sizeof before);
         log = (stage_log){.cancel_at = at};
-        expect_ok(untangle_at(r, r->shape.x0));
+        const cscd_status status = untangle_at(r, r->shape.x0);
         log = (stage_log){.cancel_at = 0}; /* not even what checks the result */
+        if (status == CSCD_CANCELLED) { /* on a slow machine, before the pairs were counted */
+            assert_memory_equal(before, r->reached, sizeof before);
+            continue;
+        }
+        expect_ok(status);
         expect_promises(r, r->shape.x0);
     }
     close_rig(r);
