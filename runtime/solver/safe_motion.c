@@ -384,6 +384,13 @@ static cscd_status find_contacts(safe_work *w, step_rule rule, cscd_contacts *fo
     return status;
 }
 
+/* Passes cost as much as there are stops. Where each vertex has very many, as in a mesh that shrinks to a point, no impulses help, and
+ * there are fewer passes, so that the cost follows the mesh. */
+static int affordable_passes(const safe_work *w, int passes) {
+    const double most = 64.0 * w->detector->mesh->vertex_count, count = (double)w->response.stop_count;
+    return count > most ? (int)max_of(8.0, passes * most / count) : passes;
+}
+
 /* Responds to contacts: to the first ones where they are, and later between their features, so that none of them comes back
  * elsewhere. */
 static cscd_status respond_to(safe_work *w, const cscd_contacts *found, bool between_sides, int passes) {
@@ -398,7 +405,7 @@ static cscd_status respond_to(safe_work *w, const cscd_contacts *found, bool bet
         response_take_sides(r, found->items, found->count);
     else
         response_take(r, found->items, found->count);
-    response_stop(r, passes);
+    response_stop(r, affordable_passes(w, passes));
     return CSCD_OK;
 }
 

@@ -369,7 +369,7 @@ TEST(what_is_cancelled_is_the_best_so_far) {
         log = (stage_log){.cancel_at = at};
         const cscd_status status = untangle_at(r, r->shape.x0);
         log = (stage_log){.cancel_at = 0}; /* not even what checks the result */
-        if (status == CSCD_CANCELLED) { /* on a slow machine, before the pairs were counted */
+        if (status == CSCD_CANCELLED) {    /* on a slow machine, before the pairs were counted */
             assert_memory_equal(before, r->reached, sizeof before);
             continue;
         }
