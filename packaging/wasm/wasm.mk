@@ -12,7 +12,8 @@ TEST_LIBS       := -L$(WASM_LIBRARIES)/lib -lcmocka-static
 TEST_ROOMS_HERE := core mesh ccd bvh culling narrow_phase loose intersections events baselines detector solver sensors preprocess proofs
 BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c tests/windows/dense_solve.c
 COMMON_SOURCES  := tool/io/io.c tool/io/io_memory.c
-SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/solver/exact_distance.c \
+SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/untangle/%.c \
+                     tests/support/solver/exact_distance.c \
                      $(foreach room,install io models report tool,tests/support/$(room)/%),$(SUPPORT_SOURCES)) \
                    tests/support/models/bodies.c
 TEST_SOURCES    := $(filter-out $(shell sed -n 's|^\(tests/[^: ]*\):.*|\1|p' tests/wasm/left_out.txt) %.py, \

@@ -20,7 +20,7 @@ BASELINE_SOURCES := preprocess/baselines/dense/dense_system.c tests/windows/dens
 
 # Without a library for Windows: GMP, FLINT and Arb. Without a meaning there: what Unix alone has. tests/windows/left_out.txt says
 # why each program is missing, and which tests of others are known to fail.
-SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c \
+SUPPORT_SOURCES := $(filter-out tests/support/ccd/algebraic_%.c tests/support/untangle/%.c \
                      tests/support/solver/exact_distance.c,$(SUPPORT_SOURCES))
 TEST_SOURCES := $(filter-out $(shell sed -n 's|^\(tests/[^: ]*\):.*|\1|p' tests/windows/left_out.txt),$(TEST_SOURCES))
 
