@@ -48,4 +48,4 @@ done
 block ray >run_ray.py
 grep -q 'import ray' run_ray.py
 /usr/bin/python3 -m py_compile run_ray.py
-grep -q "Tested with Dask $(/usr/bin/python3 -c 'import dask; print(".".join(dask.__version__.split(".")[:2]))')\." "$page"
+grep -q "^with $(/usr/bin/python3 -c 'import dask; print(".".join(dask.__version__.split(".")[:2]))')):$" "$page"
