@@ -25,14 +25,16 @@ static const cscd_mesh *mesh_of(const cscd_detector *detector) {
     return detector != NULL ? cscd_detector_mesh(detector) : NULL;
 }
 
-/* A line search does not tell its mesh: its views claim memory without end. */
+/* A line search does not tell its mesh: its views claim more vertices than any test has, in a size that 32 bits hold. */
+enum { MORE_THAN_ALL = 1 << 24 };
+
 static const cscd_view *line_view_of(const double *x, cscd_view *view) {
-    *view = cscd_view_doubles(x, UINT32_MAX);
+    *view = cscd_view_doubles(x, MORE_THAN_ALL);
     return x != NULL ? view : NULL;
 }
 
 static const cscd_mutable_view *mutable_line_view_of(double *x, cscd_mutable_view *view) {
-    *view = cscd_mutable_view_doubles(x, UINT32_MAX);
+    *view = cscd_mutable_view_doubles(x, MORE_THAN_ALL);
     return x != NULL ? view : NULL;
 }
 
